@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from browser.client import ARROW_DOWN, ARROW_RIGHT, ENTER, ESCAPE, Browser
-from browser.page import CLOSED, DRAWN, FOCUS, ROWS, Checks, Shot, open_whole
+from browser.page import CLOSED, DRAWING, DRAWN, FOCUS, ROWS, Checks, Shot, open_whole
 
 FOLLOWING = 4  # what compareDocumentPosition says of an element behind another
 DISTINCT = """
@@ -184,15 +184,17 @@ def accuracy(page: Browser, shot: Shot) -> Checks:
     for quantity in page.run("return [...document.querySelector('#accuracy-quantity').options].map(option => option.value)")[::-1]:
         page.choose("#accuracy-quantity", quantity)
         heads = page.run("return [...document.querySelectorAll('#accuracy-table th.engine')].filter(head => !head.hidden).length")
-        plotted = page.run("return !document.getElementById('accuracy-plot')") or page.until(DRAWN, "accuracy-plot") > 0
+        along = page.run("return document.querySelector('#accuracy-family').value")
+        plotted = along == "" or page.until(DRAWN, "accuracy-plot") > 0
         yield f"the digits of {quantity} can be chosen", heads == 1 and plotted, heads
-    if page.run("return document.querySelector('#accuracy-axis') !== null"):
-        title = "return document.querySelector('#accuracy-plot .xtitle').textContent"
+    if along:
+        title = DRAWING + "const now = box?.querySelector('.xtitle')?.textContent; return now && !arguments[1].includes(now) && now"
         titles: set[str] = set()
-        axes = page.run("return [...document.querySelector('#accuracy-axis').options].map(option => option.value)")
+        options = "[...document.querySelector('#accuracy-axis').options]"
+        axes = page.run(f"return {options}.filter(option => !option.disabled).map(option => option.value)")
         for axis in axes[::-1]:
             page.choose("#accuracy-axis", axis)
-            now = page.until(f"const now = (() => {{ {title} }})(); return !arguments[0].includes(now) && now", sorted(titles))
+            now = page.until(title, "accuracy-plot", sorted(titles))
             family = page.run("return document.querySelector('#accuracy-family').value")
             yield (
                 f"the digits can be plotted against {axis}",
@@ -200,7 +202,7 @@ def accuracy(page: Browser, shot: Shot) -> Checks:
                 [now, family],
             )
             titles.add(now)
-            page.run("document.getElementById('accuracy-plot').scrollIntoView({block: 'center', behavior: 'instant'})")
+            page.run(DRAWING + "box.scrollIntoView({block: 'center', behavior: 'instant'})", "accuracy-plot")
             shot(f"accuracy-{axis}")
     page.run("const box = document.querySelector('#accuracy-filter'); box.value = 'no such robot'; box.dispatchEvent(new Event('input'))")
     left = page.run("return [...document.querySelectorAll('#accuracy-table tr[data-m]')].filter(row => !row.hidden).length")

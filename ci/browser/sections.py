@@ -7,8 +7,8 @@ import pathlib
 import re
 
 from browser.cells import accuracy, heatmap, joints
-from browser.client import ESCAPE, Browser
-from browser.page import DRAWN, ROWS, Checks, Shot, has, open_whole
+from browser.client import ARROW_RIGHT, ESCAPE, Browser
+from browser.page import DRAWING, DRAWN, ROWS, Checks, Shot, has, open_whole
 from browser.plots import drawn, plots
 
 # The most nodes of the first page before the reader does anything.
@@ -86,11 +86,11 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
         yield from accuracy(page, shot)
     if has(page, "#depth-quantity"):
         yield from depth(page)
-    if has(page, "#time-unit"):
-        page.choose("#time-unit", "joint")
-        title = page.until("return document.querySelector('#time-plot .ytitle').textContent.includes('joint')")
-        yield "time per joint can be plotted", title, ""
-    if has(page, "#speed-plot"):
+    if has(page, "#time-family"):
+        for family in page.run("return [...document.querySelector('#time-family').options].map(option => option.value)")[::-1]:
+            page.choose("#time-family", family)
+            yield f"times of family {family} are plotted", page.until(DRAWN, "time-plot") > 0, family
+    if has(page, "#speed-quantity"):
         yield from speed(page, shot)
     if has(page, "#speed-verdict"):
         yield from fastest(page, shot)
@@ -215,42 +215,31 @@ def conventions(page: Browser, shot: Shot) -> Checks:
 
 
 def depth(page: Browser) -> Checks:
-    """Check the plot of errors against depth."""
-    title = "return document.querySelector('#depth-plot .ytitle').textContent"
-    before = page.run(title)
+    """Check the drawings of errors against depth."""
+    title = DRAWING + "const now = box?.querySelector('.ytitle').textContent; return now !== arguments[1] && now"
+    before = page.run(title, "depth-plot", "")
     others = page.run(
         "const list = document.querySelector('#depth-quantity');"
         " return [...list.options].filter(option => option.value !== list.value).map(option => option.value)"
     )
     if others:
         page.choose("#depth-quantity", others[0])
-        after = page.until(f"const now = (() => {{ {title} }})(); return now !== arguments[0] && now", before)
+        after = page.until(title, "depth-plot", before)
         yield "another quantity can be plotted", bool(after) and page.until(DRAWN, "depth-plot") > 0, [before, after]
-    marks = """
-        const mark = document.querySelector('#depth-plot .marks .mark');
-        if (!mark) return null;
-        mark.scrollIntoView({block: 'center', behavior: 'instant'});
-        const box = mark.getBoundingClientRect();
-        return [box.x + box.width / 2, box.y + box.height / 2]"""
-    place = page.run(marks)
-    if place:
-        move = {"type": "pointerMove", "duration": 50, "x": round(place[0]), "y": round(place[1])}
-        pointer = [move, {"type": "pause", "duration": 300}, {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}]
-        page.post("/actions", actions=[{"type": "pointer", "id": "mouse", "actions": pointer}])
-        yield "a click on a mark shows its rows", page.until(ROWS) > 0, place
-        page.press(ESCAPE)
 
 
 def speed(page: Browser, shot: Shot) -> Checks:
     """Check the section on speed."""
-    title = "return document.querySelector('#speed-plot .ytitle').textContent"
+    title = DRAWING + "const now = box?.querySelector('.ytitle').textContent ?? ''; return now.startsWith(arguments[1]) && now"
     for quantity in page.run("return [...document.querySelector('#speed-quantity').options].map(option => option.value)")[::-1]:
-        words = page.run("return document.querySelector('#speed-quantity').options[arguments[0]].textContent", int(quantity))
-        for case in ["hot", "stream"]:
+        option = "[...document.querySelector('#speed-quantity').options].find(option => option.value === arguments[0])"
+        words = page.run(f"return {option}.textContent", quantity)
+        page.choose("#speed-quantity", quantity)
+        cases = "[...document.querySelector('#speed-case').options].filter(option => !option.disabled)"
+        for case in page.run(f"return {cases}.map(option => option.value)"):
             page.choose("#speed-case", case)
-            page.choose("#speed-quantity", quantity)
-            seen = page.until(f"const now = (() => {{ {title} }})(); return now.startsWith(arguments[0]) && now", words)
-            ends = page.until("return document.querySelectorAll('#speed-plot .bar').length")
+            seen = page.until(title, "speed-plot", words)
+            ends = page.until(DRAWING + "return box?.querySelectorAll('.interval').length", "speed-plot")
             yield (
                 f"ratios of {words}, {case}, are plotted with intervals",
                 bool(seen) and page.until(DRAWN, "speed-plot") > 0 and ends > 0,
@@ -303,18 +292,12 @@ def scaling(page: Browser, shot: Shot) -> Checks:
 def theme(page: Browser, address: str, shot: Shot, pictured: list[str]) -> Checks:
     """Check the change of theme; of each section that is pictured, a picture is taken."""
     before = page.run(BACKGROUND)
-    ink = "const title = document.querySelector('.ytitle'); return title && title.getAttribute('fill')"
-    plot_before = page.run(ink)
     page.run("scrollTo({top: 0, behavior: 'instant'})")
     page.click("#theme")
     after = page.run(BACKGROUND)
     yield "the theme changes", before != after, [before, after]
-    if plot_before:
-        yield (
-            "the plots change with it",
-            page.until(f"const now = (() => {{ {ink} }})(); return now !== arguments[0] && now", plot_before),
-            plot_before,
-        )
+    papers = page.run("return [...document.querySelectorAll('.paper')].map(paper => getComputedStyle(paper).backgroundColor)")
+    yield "drawings stay on white paper", set(papers) <= {"rgb(255, 255, 255)"}, set(papers)
     shot("theme")
     for place in pictured:
         page.run("document.getElementById(arguments[0]).scrollIntoView({behavior: 'instant'})", place)
@@ -326,16 +309,16 @@ def theme(page: Browser, address: str, shot: Shot, pictured: list[str]) -> Check
 
 def narrow(page: Browser, shot: Shot) -> Checks:
     """Check the page in a narrow window."""
-    page.post("/window/rect", width=500, height=900)
+    page.post("/window/rect", width=390, height=844)
     fits = page.until("return innerWidth < 600 && document.documentElement.scrollWidth <= innerWidth")
     yield "a narrow window does not scroll sideways", fits, page.run("return [document.documentElement.scrollWidth, innerWidth]")
     shot("narrow")
     if boxes := drawn(page):
-        sizes = """
-            const drawings = arguments[0].map(id => document.querySelector(`#${id} svg[role=img]`));
-            return drawings.map(svg => [svg.viewBox.baseVal.width, svg.clientWidth])"""
-        fitted = f"return (() => {{ {sizes} }})().every(([drawn, wide]) => drawn === wide && wide < 500)"
-        yield "the plots are drawn again for a narrow window", page.until(fitted, boxes), page.run(sizes, boxes)
+        page.run(DRAWING + "box.scrollIntoView({block: 'center', behavior: 'instant'}); box.querySelector('svg').focus()", boxes[0])
+        page.press(ARROW_RIGHT)
+        edges = "const {left, right} = box.querySelector('.chart-tip').getBoundingClientRect(); return [left, right]"
+        tip = page.run(DRAWING + edges, boxes[0])
+        yield "a tip is inside a narrow window", tip[1] > tip[0] >= 0 and tip[1] <= page.run("return innerWidth"), tip
 
 
 def silence(page: Browser) -> Checks:

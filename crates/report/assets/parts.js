@@ -82,7 +82,9 @@
   // Every section and piece, for the browser's search.
   async function everything() {
     await Promise.all([...document.querySelectorAll("main > section")].map(show));
-    await Promise.all([...document.querySelectorAll("[data-part]")].map(bring));
+    // What is not chosen is not printed either.
+    const wanted = [...document.querySelectorAll("[data-part]")].filter((place) => !place.closest("[data-choice][hidden]"));
+    await Promise.all(wanted.map(bring));
   }
 
   // An address may name an element of a section that is not here yet.

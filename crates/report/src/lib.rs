@@ -5,8 +5,8 @@
 //!
 //! The folder needs no network and no server. `index.html` opens with the findings and names every section; what is large is brought when the
 //! window is near it or when it is opened, and has a page of its own under `sections/`. Each engine, robot and study has a page, too. `data/*.js` has the rows and those pieces: the page
-//! adds a script element to read them, as a page under `file://` may not fetch. `app.js` draws the plots as SVG. `figures/` has the figures for
-//! papers, which [`mod@figure`] draws.
+//! adds a script element to read them, as a page under `file://` may not fetch. [`mod@figure`] draws the plots of sections and the figures for papers,
+//! which are in `figures/`.
 //! Every number on the page is made from rows, and every cell and point leads back to its rows.
 //!
 //! # The order of the files
@@ -14,13 +14,14 @@
 //!
 //! | layer | files |
 //! |---|---|
-//! | data | [`numbers`], [`labels`], [`fit`], `error`, then [`figure`], then `tally`, `overview`, `section`, then `findings`, `parts`, then `chunks`, [`forms`] |
+//! | data | [`numbers`], [`labels`], [`fit`], `error`, then [`figure`], then `tally`, `overview`, `section`, then [`choices`], `findings`, `parts`, then `chunks`, [`forms`] |
 //! | sections | `blocks`, [`mod@robot`], then [`map`], `drawings`, then `cards`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed`, `figures`, `subjects` |
 //! | page | `page`, `sheet`, `summary`, [`changes`], `trends`, then [`runs`], then `files`, then `write` |
 
 mod blocks;
 mod cards;
 pub mod changes;
+pub mod choices;
 mod chunks;
 mod conventions;
 mod drawings;

@@ -46,6 +46,7 @@ pub struct Overview<'a> {
     /// Names of the engines, also of those that failed to answer.
     pub engines: Vec<&'a str>,
     /// How each looks in every drawing.
+    #[serde(skip)]
     pub styles: Vec<Style>,
     /// Robots, families together.
     pub robots: Vec<Robot<'a>>,

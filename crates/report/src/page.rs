@@ -87,7 +87,7 @@ fn frame(run: &RunInfo, sections: &[&Section], below: Option<[&str; 2]>, body: &
                 }
                 (rows_dialog())
                 div #tip role="tooltip" hidden {}
-                noscript { p.notice { "Without scripts each section is read on its own page; plots and the rows behind each cell need them." } }
+                noscript { p.notice { "Without scripts each section is read on its own page; the rows behind each cell need them." } }
             }
         }
     };

@@ -26,7 +26,7 @@ pub struct Section {
     pub body: Markup,
     /// Its data, which its script finds as `featherbench.chunks.get("figures")[anchor]`; see [`Section::with_data`].
     pub data: Option<Result<String, serde_json::Error>>,
-    /// Its script. It runs when the section is first near the window, after the report's own scripts, which offer tables, plots and
+    /// Its script. It runs when the section is first near the window, after the report's own scripts, which offer tables and
     /// drill-down; the body and the data are at hand then.
     pub script: &'static str,
     /// Its style, if it needs more than the report's own.

@@ -6,7 +6,7 @@ use featherbench_results::{BESIDE, ChangePoint, ERROR_FACTOR, ERROR_FLOOR, Row, 
 use maud::{Markup, PreEscaped, html};
 
 use crate::changes::{Side, versions};
-use crate::figure::{Axis, Line, Plot, Point, Series, style};
+use crate::figure::{Axis, Plot, Point, Series, style};
 use crate::labels;
 use crate::numbers::{count, larger, short};
 
@@ -106,19 +106,13 @@ fn upgrades(runs: &[Side]) -> Vec<(f64, String)> {
 
 /// A figure of lines; nothing without a point.
 fn drawn(lines: &Lines, title: &str, unit: &str, events: &[(f64, String)]) -> Markup {
-    let series = lines.iter().map(|(engine, values)| Series {
-        name: engine.clone(),
-        style: style(engine),
-        line: Line::Straight,
-        points: values.iter().map(|&(run, value)| Point { name: format!("run {}", run + 1), x: run as f64 + 1.0, y: value }).collect(),
+    let series = lines.iter().map(|(engine, values)| {
+        let points = values.iter().map(|&(run, value)| Point::new(format!("run {}", run + 1), run as f64 + 1.0, value)).collect();
+        Series::new(engine, style(engine), points)
     });
     let counted = unit == "rows";
-    let plot = Plot {
-        title: title.to_owned(),
-        x: Axis::linear("run, in the order of their start"),
-        y: if counted { Axis::linear(unit) } else { Axis::log(unit) },
-        series: series.collect(),
-    };
+    let upwards = if counted { Axis::linear(unit) } else { Axis::log(unit) };
+    let plot = Plot::new(title, Axis::linear("run, in the order of their start"), upwards, series.collect());
     html! {
         @if let Some(figure) = plot.figure_with("trend", String::new(), events) {
             figure.drawn { figcaption { (title) } (PreEscaped(figure.svg)) }

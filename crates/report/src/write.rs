@@ -23,11 +23,7 @@ const SCRIPT: &str = concat!(
     include_str!("../assets/rows.js"),
     include_str!("../assets/grid.js"),
     include_str!("../assets/map.js"),
-    include_str!("../assets/chart_axes.js"),
-    include_str!("../assets/chart_marks.js"),
-    include_str!("../assets/chart_draw.js"),
-    include_str!("../assets/chart.js"),
-    include_str!("../assets/plots.js"),
+    include_str!("../assets/drawing.js"),
     include_str!("../assets/figures.js"),
     include_str!("../assets/robot.js"),
 );

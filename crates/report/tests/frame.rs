@@ -44,7 +44,7 @@ fn a_section_brings_its_data_script_and_style() {
     assert!(!written.text("data/figures.js").contains("</script>"));
     assert!(
         written.text("app.js").ends_with("featherbench.section(\"one\", () => {\n// script one\n});\n")
-            && written.text("app.js").contains("featherbench.chart = ")
+            && written.text("app.js").contains("featherbench.open = ")
     );
     assert!(written.text("style.css").ends_with(".one { color: red; }\n") && written.text("style.css").contains(".tiles"));
 }

@@ -1,6 +1,9 @@
-//! What the studies' figures for papers share: the list of them, and curves of the largest value at each place.
+//! What the studies' figures share: the list of those for papers, curves of the largest value at each place, and words of drawings on the page.
 
-use featherbench_report::figure::{Line, Point, Series, style};
+use featherbench_report::figure::{Axis, Line, Plot, Point, Series, Style, style};
+use featherbench_report::fit::Fit;
+use featherbench_report::numbers::larger;
+use maud::Markup;
 use std::collections::BTreeMap;
 
 /// Every figure that a run can have, and the rows that it needs. A figure without its rows is absent.
@@ -17,6 +20,66 @@ pub const FIGURES: [(&str, &str); 11] = [
     ("memory-size", "memory of two sizes of one family (study growth)"),
     ("speed-profile", "times of two engines on one robot that count and are no estimates (study timing, live)"),
 ];
+
+/// What stands on the lower edge of an axis of errors, for all that is smaller: far below the spacing of doubles at one.
+pub(crate) const ZERO: f64 = 1e-18;
+
+/// A logarithmic axis of errors, which may be zero.
+pub(crate) fn errors(title: impl Into<String>) -> Axis {
+    Axis::log(title).down_to(ZERO)
+}
+
+/// The parts of a name that are not empty.
+pub(crate) fn joined(parts: &[&str]) -> String {
+    parts.iter().copied().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" · ")
+}
+
+/// A name with the exponent of a fit.
+pub(crate) fn with_exponent(name: String, slope: Option<f64>, digits: usize) -> String {
+    match slope {
+        Some(slope) => format!("{name}, p = {slope:.digits$}").replace("= -", "= −"),
+        None => name,
+    }
+}
+
+/// A number as a mark tells it: four digits.
+pub(crate) fn told(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        "0".into()
+    } else if !(1e-3..1e6).contains(&size) {
+        format!("{value:.2e}")
+    } else {
+        let decimals = larger(0.0, 3.0 - size.log10().floor()) as usize;
+        let text = format!("{value:.decimals$}");
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    }
+}
+
+/// The point of a power law at a size.
+pub(crate) fn fitted(fit: Fit, size: f64) -> [f64; 2] {
+    [size, 10.0_f64.powf(fit.intercept + fit.slope * size.log10())]
+}
+
+/// A point with lines that the page tells below its name.
+pub(crate) fn point(name: &str, x: f64, y: f64, about: impl IntoIterator<Item = String>) -> Point {
+    Point { about: about.into_iter().filter(|line| !line.is_empty()).collect(), ..Point::new(name, x, y) }
+}
+
+/// A series of a list whose members are no engines.
+pub(crate) fn nth(index: usize, name: impl Into<String>, points: Vec<Point>) -> Series {
+    Series::new(name, Style::nth(index), points)
+}
+
+/// The same without a line.
+pub(crate) fn scattered(index: usize, name: impl Into<String>, points: Vec<Point>) -> Series {
+    Series { line: Line::Marks, ..nth(index, name, points) }
+}
+
+/// A drawing of the page.
+pub(crate) fn drawing(name: &str, title: &str, x: Axis, y: Axis, series: Vec<Series>) -> Markup {
+    Plot::new(title, x, y, series).drawing(name, "no values to draw")
+}
 
 /// A value of an engine on a robot.
 pub(crate) struct Measured<'a> {
@@ -35,20 +98,29 @@ pub(crate) fn largest(engine: &str, name: String, values: &[Measured]) -> Series
             *known = value;
         }
     }
-    let points = places.into_values().map(|value| Point { name: value.robot.to_owned(), x: value.x, y: value.y }).collect();
-    Series { name, style: style(engine), line: Line::Straight, points }
+    let points = places.into_values().map(|value| Point::new(value.robot, value.x, value.y)).collect();
+    Series::new(name, style(engine), points)
 }
 
 /// The share of values up to each value, as steps.
 pub(crate) fn shares(engine: &str, name: String, mut values: Vec<(f64, String)>, all: usize) -> Series {
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let share = |(index, (x, name)): (usize, (f64, String))| Point { name, x, y: (index + 1) as f64 / all as f64 };
-    Series { name, style: style(engine), line: Line::Stairs, points: values.into_iter().enumerate().map(share).collect() }
+    let share = |(index, (x, name)): (usize, (f64, String))| Point::new(name, x, (index + 1) as f64 / all as f64);
+    Series { line: Line::Stairs, ..Series::new(name, style(engine), values.into_iter().enumerate().map(share).collect()) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn marks_tell_four_digits() {
+        assert_eq!(
+            [0.0, 1.0, -0.25, 1234.56, 0.12345, 3.2e-14, 1e6].map(told),
+            ["0", "1", "-0.25", "1235", "0.1235", "3.20e-14", "1.00e6"]
+        );
+        assert_eq!(with_exponent(joined(&["drake", "", "aba"]), Some(-0.5), 2), "drake · aba, p = −0.50");
+    }
 
     #[test]
     fn a_curve_has_the_largest_value_at_each_place() {

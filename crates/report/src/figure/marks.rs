@@ -2,8 +2,13 @@
 
 use maud::{Markup, html};
 
-use super::style::{COLOURS, Style};
+use super::style::{Style, TICK, ink};
 use super::{at, width};
+
+/// Dashes of lines, by index.
+const DASHES: [Option<&str>; 6] = [None, Some("6 4"), Some("1.5 3"), Some("7 3 1.5 3"), Some("12 4"), Some("12 3 1.5 3")];
+/// The radius of a mark.
+const RADIUS: f64 = 4.0;
 
 /// Corners of each mark about the origin, in radii; the first is a circle.
 fn corners(mark: usize) -> Vec<(f64, f64)> {
@@ -27,23 +32,58 @@ fn corners(mark: usize) -> Vec<(f64, f64)> {
     }
 }
 
-/// A mark at a place, with a thin edge of the paper's colour: marks on one another can be told apart.
-pub(super) fn mark(style: Style, x: f64, y: f64) -> Markup {
-    let radius = 4.0;
-    let ink = COLOURS[style.colour];
-    let (fill, stroke, thick) = if style.hollow { ("#ffffff", ink, "1.4") } else { (ink, "#ffffff", "0.6") };
+/// What the page needs to know of a mark.
+#[derive(Default)]
+pub(super) struct Data<'a> {
+    /// Its values, as numbers.
+    pub(super) value: Option<String>,
+    /// The chunk of its rows.
+    pub(super) chunk: Option<&'a str>,
+    /// What these are of, if not of what the mark is named after.
+    pub(super) title: Option<&'a str>,
+    /// Their filters beyond those of its series.
+    pub(super) filter: Option<String>,
+}
+
+/// A mark at a place, in a group that fills marks with their colour and gives them a thin edge of the paper's colour: marks on one another can
+/// be told apart.
+pub(super) fn mark(style: Style, hollow: bool, estimated: bool, x: f64, y: f64, words: Markup, data: &Data) -> Markup {
+    let colour = ink(style.colour);
+    let tick = style.mark == TICK;
+    let open = hollow || style.hollow || tick;
+    let [fill, stroke, thick] = ["#ffffff", colour, "1.4"].map(|own| open.then_some(own));
+    let place = format!("translate({} {})", at(x), at(y));
     html! {
-        @if style.mark == 0 {
-            circle.mark cx=(at(x)) cy=(at(y)) r=(at(radius)) fill=(fill) stroke=(stroke) stroke-width=(thick) {}
+        @if style.mark == 0 && !estimated {
+            circle.mark transform=(place) r=(at(RADIUS)) fill=[fill] stroke=[stroke] stroke-width=[thick]
+                data-value=[&data.value] data-rows=[data.chunk] data-title=[data.title] data-filter=[&data.filter] { (words) }
         } @else {
-            @let points: Vec<String> = corners(style.mark).into_iter().map(|(a, b)| format!("{} {}", at(x + radius * a), at(y + radius * b))).collect();
-            path.mark d={ "M" (points.join("L")) "z" } fill=(fill) stroke=(stroke) stroke-width=(thick) {}
+            path.mark transform=(place) d=(outline(if estimated { usize::MAX } else { style.mark })) fill=[fill] stroke=[stroke] stroke-width=[thick]
+                data-value=[&data.value] data-rows=[data.chunk] data-title=[data.title] data-filter=[&data.filter] { (words) }
         }
     }
 }
 
+fn outline(mark: usize) -> String {
+    if mark == TICK {
+        return "M-5 0h10".into();
+    }
+    let points: Vec<String> = corners(mark).into_iter().map(|(a, b)| format!("{} {}", at(RADIUS * a), at(RADIUS * b))).collect();
+    format!("M{}z", points.join("L"))
+}
+
 /// A line through places; a step goes across first, then up or down.
-pub(super) fn path(style: Style, places: &[(f64, f64)], step: bool) -> Markup {
+pub(super) fn path(style: Style, dash: usize, places: &[(f64, f64)], step: bool) -> Markup {
+    let dashes = if style.hollow && dash == 0 { Some("5 3") } else { DASHES[dash % DASHES.len()] };
+    html! { path d=(way(places, step)) fill="none" stroke=(ink(style.colour)) stroke-width="1.5" stroke-dasharray=[dashes] {} }
+}
+
+/// A broad pale line through places.
+pub(super) fn broad(style: Style, places: &[(f64, f64)]) -> Markup {
+    html! { path d=(way(places, false)) fill="none" stroke=(ink(style.colour)) stroke-width="6" stroke-opacity="0.18" {} }
+}
+
+fn way(places: &[(f64, f64)], step: bool) -> String {
     let mut way = String::new();
     for (index, &(x, y)) in places.iter().enumerate() {
         way += &match (index, step) {
@@ -52,24 +92,41 @@ pub(super) fn path(style: Style, places: &[(f64, f64)], step: bool) -> Markup {
             (_, false) => format!("L{} {}", at(x), at(y)),
         };
     }
-    html! { path d=(way) fill="none" stroke=(COLOURS[style.colour]) stroke-width="1.5" stroke-linejoin="round" stroke-dasharray=[style.hollow.then_some("5 3")] {} }
+    way
+}
+
+/// What a legend shows of a series.
+#[derive(Clone, Copy)]
+pub(super) struct Sample {
+    /// Whether its points are joined.
+    pub(super) line: bool,
+    /// Its dashes.
+    pub(super) dash: usize,
+    /// Whether it has marks, and whether all of them are hollow and estimates.
+    pub(super) marks: Option<(bool, bool)>,
+    /// Whether it is a broad line alone.
+    pub(super) broad: bool,
 }
 
 /// The names of series, each with its sample, below one another.
-pub(super) fn legend(names: &[(String, Style, bool)], left: f64, top: f64) -> Markup {
+pub(super) fn legend(entries: &[(&str, Style, Sample)], left: f64, top: f64) -> Markup {
     html! {
         g.legend {
-            @for (index, (name, style, line)) in names.iter().enumerate() {
+            @for (index, (name, style, sample)) in entries.iter().enumerate() {
                 @let y = top + 20.0 * index as f64;
-                @if *line { (path(*style, &[(left, y), (left + 26.0, y)], false)) }
-                (mark(*style, left + 13.0, y))
-                text x=(at(left + 33.0)) y=(at(y + 4.0)) font-size="12" { (name) }
+                @let ends = [(left, y), (left + 26.0, y)];
+                g.entry {
+                    @if sample.broad { (broad(*style, &ends)) }
+                    @if sample.line { (path(*style, sample.dash, &ends, false)) }
+                    @if let Some((hollow, estimated)) = sample.marks { g fill=(ink(style.colour)) stroke="#ffffff" stroke-width="0.6" { (mark(*style, hollow, estimated, left + 13.0, y, html! {}, &Data::default())) } }
+                    text x=(at(left + 33.0)) y=(at(y + 4.0)) font-size="12" { (name) }
+                }
             }
         }
     }
 }
 
 /// The room of a legend.
-pub(super) fn legend_width(names: &[(String, Style, bool)]) -> f64 {
-    names.iter().map(|(name, ..)| width(name, 12.0)).fold(0.0, crate::numbers::larger) + 45.0
+pub(super) fn legend_width(entries: &[(&str, Style, Sample)]) -> f64 {
+    entries.iter().map(|(name, ..)| width(name, 12.0)).fold(0.0, crate::numbers::larger) + 45.0
 }

@@ -1,16 +1,19 @@
-//! Figures for papers, drawn once: the page, print and `report --figures` show the same file.
+//! Figures, drawn once: the page, print and papers show the same drawing. A [`Figure`] is one for papers, with a caption and its data; a
+//! [`Plot::drawing`] stands in a section of the page, where a script adds tips, zoom and the way to the rows (`assets/drawing.js`).
 //!
 //! # Why they are drawn here
 //! | way | result |
 //! |---|---|
 //! | this module | SVG of 4 to 22 kB on the default run, deterministic to the byte, texts stay texts; no dependency, as maud writes the elements |
-//! | a script of the page | needs a browser to make a file; the charts on the page stay such, for zooming and clicking |
+//! | a script of the page | needs a browser to make a file; what it draws is seen neither without scripts nor in a paper |
 //! | plotly | its script alone has 4.65 MB, and its files come from a browser too |
 //! | a plotting crate | not tried: a dependency more for axes and lines; what is most of this module, marks for each engine, the legend and captions, would remain |
 //!
-//! A figure has a caption that says its finding, and its data as CSV. An engine has one colour and one mark in all of them: [`style`].
+//! The paper is white in dark mode, too. A figure has a caption that says its finding, and its data as CSV. An engine has one colour and one mark in all of them: [`style`].
 
 mod axis;
+mod draw;
+mod drawing;
 mod heat;
 mod marks;
 mod plot;
@@ -18,7 +21,7 @@ mod style;
 
 pub use axis::Axis;
 pub use heat::Heat;
-pub use plot::{Line, Plot, Point, Series};
+pub use plot::{Line, Plot, Point, Rows, Series};
 pub use style::{COLOURS, Style, style};
 
 /// A figure as it is written.
@@ -62,7 +65,7 @@ fn width(text: &str, size: f64) -> f64 {
 fn file(title: &str, [width, height]: [f64; 2], body: maud::Markup) -> String {
     let drawing = maud::html! {
         svg xmlns="http://www.w3.org/2000/svg" width=(at(width)) height=(at(height)) viewBox={ "0 0 " (at(width)) " " (at(height)) }
-            font-family="Helvetica, Arial, 'Liberation Sans', sans-serif" font-size="13" fill="#17212b" role="img" {
+            font-family="Helvetica, Arial, 'Liberation Sans', sans-serif" font-size="13" fill="#17212b" stroke-linejoin="round" role="img" {
             title { (title) }
             rect width=(at(width)) height=(at(height)) fill="#ffffff" {}
             (body)

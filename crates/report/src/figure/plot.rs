@@ -1,27 +1,15 @@
 //! Plots: lines and marks over two axes.
 
-use maud::{Markup, html};
-
-use super::axis::{Axis, Scale};
-use super::marks::{legend, legend_width, mark, path};
+use super::axis::Axis;
+use super::draw::draw;
 use super::style::Style;
-use super::{Figure, at, csv_line, file};
-
-/// Width and height of the box.
-const BOX: [f64; 2] = [430.0, 310.0];
-/// Room left of the box and above it.
-const CORNER: [f64; 2] = [72.0, 16.0];
-/// Room below the box.
-const BELOW: f64 = 50.0;
-/// Heights at which the words of events stand.
-const EVENT_LINES: usize = 6;
-/// Marks on stairs, which may have thousands of points.
-const SPARSE: usize = 8;
+use super::{Figure, csv_line, file};
 
 /// How points are joined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Line {
     /// By straight lines, in the order given.
+    #[default]
     Straight,
     /// By stairs: across, then up. Only some points have marks.
     Stairs,
@@ -29,8 +17,35 @@ pub enum Line {
     Marks,
 }
 
+/// Rows that a mark leads to on the page.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rows {
+    /// Their chunk, as `overview.chunk_of` has it.
+    pub chunk: String,
+    /// What they are of; nothing is the name of the point.
+    pub title: String,
+    /// What their columns hold.
+    pub filters: Vec<(String, String)>,
+}
+
+impl Rows {
+    /// Rows of a chunk whose columns have the given values. A filter without a value is left out.
+    pub fn of(chunk: impl Into<String>, title: impl Into<String>, filters: &[(&str, &str)]) -> Self {
+        let kept = filters.iter().filter(|(_, value)| !value.is_empty());
+        let filters = kept.map(|&(column, value)| (column.to_owned(), value.to_owned())).collect();
+        Self { chunk: chunk.into(), title: title.into(), filters }
+    }
+
+    /// The filters that are not among the given ones, as an attribute has them: a line for each.
+    pub(super) fn filters_beyond(&self, known: &[(String, String)]) -> Option<String> {
+        let own = self.filters.iter().filter(|filter| !known.contains(filter));
+        let lines: Vec<String> = own.map(|(column, value)| format!("{column}={value}")).collect();
+        (!lines.is_empty()).then(|| lines.join("\n"))
+    }
+}
+
 /// A point with its name in the data.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Point {
     /// A robot, for example.
     pub name: String,
@@ -38,10 +53,36 @@ pub struct Point {
     pub x: f64,
     /// Up.
     pub y: f64,
+    /// The ends of its interval upwards; an end that is absent is at the mark.
+    pub upwards: [Option<f64>; 2],
+    /// The ends of its interval across.
+    pub across: [Option<f64>; 2],
+    /// Whether its mark is hollow: a value that does not count, or that stands for all below the axis.
+    pub hollow: bool,
+    /// Whether it is an estimate, whose mark is a cross.
+    pub estimated: bool,
+    /// What the page says of it, in lines below its name.
+    pub about: Vec<String>,
+    /// The rows that it leads to on the page.
+    pub rows: Option<Rows>,
+}
+
+impl Point {
+    /// A point with a name.
+    pub fn new(name: impl Into<String>, x: f64, y: f64) -> Self {
+        Self { name: name.into(), x, y, ..Self::default() }
+    }
 }
 
 /// Points of one name.
-#[derive(Clone, Debug)]
+///
+/// ```
+/// use featherbench_report::figure::{Point, Series, style};
+///
+/// let series = Series::new("drake", style("drake"), vec![Point::new("arm", 7.0, 1e-15)]);
+/// assert!(series.points[0].rows.is_none() && series.level.is_none());
+/// ```
+#[derive(Clone, Debug, Default)]
 pub struct Series {
     /// The name in the legend.
     pub name: String,
@@ -49,12 +90,32 @@ pub struct Series {
     pub style: Style,
     /// How its points are joined.
     pub line: Line,
+    /// The dashes of its line, an index; zero is none.
+    pub dash: usize,
     /// The points. Those without a place on an axis are in the data alone.
     pub points: Vec<Point>,
+    /// The way of its line, if it does not go through all points.
+    pub path: Option<Vec<[f64; 2]>>,
+    /// A broad pale line, for fits and fronts.
+    pub broad: Vec<[f64; 2]>,
+    /// A level from edge to edge, which is no value of its own.
+    pub level: Option<f64>,
+}
+
+impl Series {
+    /// Points that are joined by straight lines.
+    pub fn new(name: impl Into<String>, style: Style, points: Vec<Point>) -> Self {
+        Self { name: name.into(), style, points, ..Self::default() }
+    }
+
+    /// A level from edge to edge, dotted.
+    pub fn level(name: impl Into<String>, value: f64) -> Self {
+        Self { name: name.into(), style: Style::NEUTRAL, dash: 2, level: Some(value), ..Self::default() }
+    }
 }
 
 /// A plot.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Plot {
     /// What it shows.
     pub title: String,
@@ -64,9 +125,16 @@ pub struct Plot {
     pub y: Axis,
     /// Its series.
     pub series: Vec<Series>,
+    /// Grey bands along the axis across, each from one value of the other axis to another.
+    pub bands: Vec<[f64; 2]>,
 }
 
 impl Plot {
+    /// A plot with nothing behind its series.
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Self {
+        Self { title: title.into(), x, y, series, bands: Vec::new() }
+    }
+
     /// Draws it; `None` if no point has a place.
     pub fn figure(self, name: &'static str, caption: String) -> Option<Figure> {
         self.figure_with(name, caption, &[])
@@ -74,40 +142,16 @@ impl Plot {
 
     /// The same with events: a vertical line at a place of the axis across, and what happened there.
     pub fn figure_with(self, name: &'static str, caption: String, events: &[(f64, String)]) -> Option<Figure> {
-        let shown = |point: &&Point| self.x.fits(point.x) && self.y.fits(point.y);
-        let points = || self.series.iter().flat_map(|series| &series.points).filter(shown);
-        let [left, top] = CORNER;
-        let [right, bottom] = [left + BOX[0], top + BOX[1]];
-        let x = Scale::of(&self.x, points().map(|point| point.x), [left, right])?;
-        let y = Scale::of(&self.y, points().map(|point| point.y), [bottom, top])?;
-        let names: Vec<(String, Style, bool)> =
-            self.series.iter().map(|series| (series.name.clone(), series.style, series.line != Line::Marks)).collect();
-        let below = bottom + BELOW;
-        let size = [right + 14.0 + legend_width(&names), crate::numbers::larger(below, top + 20.0 * names.len() as f64 + 10.0)];
-        let body = html! {
-            (frame(&self, &x, &y, [left, top, right, bottom]))
-            @for (index, (value, words)) in events.iter().filter(|(value, _)| self.x.fits(*value)).enumerate() {
-                @let place = x.place(*value);
-                // Words of neighbours stand below one another.
-                @let height = top + 14.0 + 13.0 * (index % EVENT_LINES) as f64;
-                path.event d={ "M" (at(place)) " " (at(top)) "V" (at(bottom)) } stroke="#8a5a00" stroke-dasharray="2 3" {}
-                @let late = place > (left + right) / 2.0;
-                text x=(at(if late { place - 4.0 } else { place + 4.0 })) y=(at(height)) font-size="11" fill="#6b4700"
-                    text-anchor=(if late { "end" } else { "start" }) { (words) }
-            }
-            @for series in &self.series {
-                @let places: Vec<(f64, f64)> = series.points.iter().filter(shown).map(|point| (x.place(point.x), y.place(point.y))).collect();
-                @let every = if series.line == Line::Stairs { places.len().div_ceil(SPARSE).max(1) } else { 1 };
-                g.series {
-                    @if places.len() > 1 && series.line != Line::Marks { (path(series.style, &places, series.line == Line::Stairs)) }
-                    @for &(x, y) in places.iter().skip((every - 1) / 2).step_by(every) { (mark(series.style, x, y)) }
-                }
-            }
-            (legend(&names, right + 14.0, top + 8.0))
-        };
+        let (size, body) = draw(&self, events, false)?;
         let svg = file(&self.title, size, body);
         let csv = self.csv();
         Some(Figure { name, title: self.title, caption, size, svg, csv })
+    }
+
+    /// The points that have a place, with their series.
+    pub(super) fn shown(&self) -> impl Iterator<Item = (&Series, &Point)> {
+        let points = self.series.iter().flat_map(|series| series.points.iter().map(move |point| (series, point)));
+        points.filter(|(_, point)| self.x.fits(point.x) && self.y.fits(point.y))
     }
 
     fn csv(&self) -> String {
@@ -118,30 +162,5 @@ impl Plot {
             }
         }
         text
-    }
-}
-
-/// The box with its grid, ticks and titles.
-fn frame(plot: &Plot, x: &Scale, y: &Scale, [left, top, right, bottom]: [f64; 4]) -> Markup {
-    let middle = (left + right) / 2.0;
-    let turned = format!("translate(18 {}) rotate(-90)", at((top + bottom) / 2.0));
-    html! {
-        g.axes stroke-width="1" {
-            @for (value, label) in x.ticks() {
-                @let place = at(x.place(value));
-                @if !label.is_empty() { path d={ "M" (place) " " (at(top)) "V" (at(bottom)) } stroke="#e6eaee" {} }
-                path d={ "M" (place) " " (at(bottom)) "v" (if label.is_empty() { "3" } else { "6" }) } stroke="#566472" {}
-                text x=(place) y=(at(bottom + 20.0)) text-anchor="middle" font-size="12" { (label) }
-            }
-            @for (value, label) in y.ticks() {
-                @let place = y.place(value);
-                @if !label.is_empty() { path d={ "M" (at(left)) " " (at(place)) "H" (at(right)) } stroke="#e6eaee" {} }
-                path d={ "M" (at(left)) " " (at(place)) "h" (if label.is_empty() { "-3" } else { "-6" }) } stroke="#566472" {}
-                text x=(at(left - 9.0)) y=(at(place + 4.0)) text-anchor="end" font-size="12" { (label) }
-            }
-            rect x=(at(left)) y=(at(top)) width=(at(right - left)) height=(at(bottom - top)) fill="none" stroke="#566472" {}
-        }
-        text x=(at(middle)) y=(at(bottom + 42.0)) text-anchor="middle" { (plot.x.title) }
-        text transform=(turned) text-anchor="middle" { (plot.y.title) }
     }
 }

@@ -8,8 +8,18 @@ const NAMED: [&str; 7] = ["featherbench", "pinocchio", "mujoco", "drake", "dart"
 /// The number of marks.
 const MARKS: usize = 8;
 
+/// The mark of what is no answer of an engine: a short level line.
+pub(super) const TICK: usize = MARKS;
+/// The ink of texts, and of what belongs to no engine.
+const INK: &str = "#17212b";
+
+/// The colour of an index.
+pub(super) fn ink(colour: usize) -> &'static str {
+    COLOURS.get(colour).copied().unwrap_or(INK)
+}
+
 /// How an engine looks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 pub struct Style {
     /// Its index in [`COLOURS`].
     pub colour: usize,
@@ -35,4 +45,24 @@ pub fn style(engine: &str) -> Style {
     let mark = colour.unwrap_or_else(|| number(base) % MARKS);
     let shift = build.map_or(0, |build| 1 + number(build) % (MARKS - 1));
     Style { colour: colour.unwrap_or(COLOURS.len() - 1), mark: (mark + shift) % MARKS, hollow: build.is_some() }
+}
+
+impl Style {
+    /// Bounds, gates and levels, which belong to no engine.
+    pub const NEUTRAL: Self = Self { colour: COLOURS.len(), mark: TICK, hollow: false };
+
+    /// One of a list of series that are no engines: a colour and a mark for each.
+    pub const fn nth(index: usize) -> Self {
+        Self { colour: index % COLOURS.len(), mark: index % MARKS, hollow: false }
+    }
+
+    /// The same colour with a mark that is so many further on: another method of an engine.
+    pub const fn method(self, index: usize) -> Self {
+        Self { mark: (self.mark + index) % MARKS, ..self }
+    }
+
+    /// Another colour.
+    pub const fn coloured(self, index: usize) -> Self {
+        Self { colour: index % COLOURS.len(), ..self }
+    }
 }

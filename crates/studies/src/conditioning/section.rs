@@ -1,6 +1,7 @@
 //! Section: the growth of the condition number of M with a chain's length, and how little it says about lost digits; and the condition numbers of
 //! floating bases.
 
+mod drawings;
 mod floating_base;
 
 use std::collections::BTreeMap;
@@ -10,24 +11,13 @@ use featherbench_report::fit::{Fit, power_law};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, labels, opener, robot_chunk};
 use featherbench_results::{Row, RunInfo, Verdict};
-use floating_base::Base;
 use maud::{Markup, html};
-use serde::Serialize;
 
 /// The study's name in rows.
 const STUDY: &str = "conditioning";
 
-/// What the section draws.
-#[derive(Debug, Serialize)]
-pub struct Figures<'a> {
-    /// Chains, family by family.
-    pub families: Vec<Family<'a>>,
-    /// Robots with a floating base.
-    pub bases: Vec<Base<'a>>,
-}
-
 /// One family of chains.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub struct Family<'a> {
     /// Its name.
     pub name: &'a str,
@@ -40,7 +30,7 @@ pub struct Family<'a> {
 }
 
 /// One robot.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default)]
 pub struct Point<'a> {
     /// Index of the robot.
     pub robot: usize,
@@ -53,10 +43,8 @@ pub struct Point<'a> {
     /// The conditioning bound of forward dynamics.
     pub floor: Option<f64>,
     /// Local exponents of both, with their verdicts.
-    #[serde(skip)]
     exponents: [Option<(f64, Verdict)>; 2],
     /// Why there is no number.
-    #[serde(skip)]
     reason: &'a str,
 }
 
@@ -89,18 +77,18 @@ fn families<'a>(overview: &Overview<'a>, rows: &'a [Row]) -> Vec<Family<'a>> {
 
 /// Makes the section, if the run has condition numbers.
 pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
-    let figures = Figures { families: families(overview, rows), bases: floating_base::bases(overview, rows) };
-    if figures.families.is_empty() && figures.bases.is_empty() {
+    let (families, bases) = (families(overview, rows), floating_base::bases(overview, rows));
+    if families.is_empty() && bases.is_empty() {
         return Vec::new();
     }
     let body = html! {
         section #conditioning {
             h2 { "Conditioning" }
-            @if !figures.families.is_empty() { (chains(overview, &figures.families)) }
-            @if !figures.bases.is_empty() { (floating_base::body(overview, &figures.bases)) }
+            @if !families.is_empty() { (chains(overview, &families)) }
+            @if !bases.is_empty() { (floating_base::body(overview, &bases)) }
         }
     };
-    vec![Section { script: include_str!("section.js"), ..Section::new("conditioning", "Conditioning", body).with_data(&figures) }]
+    vec![Section::new("conditioning", "Conditioning", body)]
 }
 
 fn chains(overview: &Overview, families: &[Family]) -> Markup {
@@ -110,8 +98,7 @@ fn chains(overview: &Overview, families: &[Family]) -> Markup {
             "Right, on one scale: the relative error that κ would excuse, κ·2⁻⁵³, and the conditioning bound, which rounding the inputs makes unavoidable."
         }
         div.pair {
-            div #conditioning-plot.plot role="group" aria-label="Plot of the condition number against the degrees of freedom" {}
-            div #floor-plot.plot role="group" aria-label="Plot of the error that the condition number would excuse, and of the conditioning bound" {}
+            (drawings::chains(overview, families))
         }
         div.scroll {
             table.compact.sortable {

@@ -1,18 +1,18 @@
 //! Section: problems with loops, contacts and events whose answers are known.
 
+mod drawings;
+
 use super::STUDY;
 use crate::known::{passed, table};
 use crate::scenes::section::views;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
 use maud::{Markup, html};
-use serde::Serialize;
 
 /// Of each method: its name, and of each problem its name, iterations and a value.
 type Lines<'a> = Vec<(&'a str, Vec<(&'a str, f64, f64)>)>;
 
 /// What the section draws.
-#[derive(Serialize)]
 struct Figures<'a> {
     /// Of each shape of the cone: its name, and heading (°) with the friction felt over that of the round cone.
     felt: Vec<(&'a str, Vec<(f64, f64)>)>,
@@ -50,8 +50,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
     let Some(first) = rows.first() else { return Vec::new() };
     let chunk = overview.chunk_of(first);
-    let section = Section { script: include_str!("section/figures.js"), ..Section::new("contact", "Contact", body(&rows, &chunk)) };
-    vec![section.with_data(&figures(&rows))]
+    vec![Section::new("contact", "Contact", body(&rows, &figures(&rows), &chunk))]
 }
 
 fn figures<'a>(rows: &[&'a Row]) -> Figures<'a> {
@@ -128,7 +127,7 @@ fn of_none<'a>(rows: &[&'a Row]) -> (Vec<&'a str>, Vec<&'a str>) {
     (names(answering), names(silent))
 }
 
-fn body(rows: &[&Row], chunk: &str) -> Markup {
+fn body(rows: &[&Row], figures: &Figures, chunk: &str) -> Markup {
     let (passed, judged) = passed(rows);
     let (answering, silent) = of_none(rows);
     html! {
@@ -146,12 +145,12 @@ fn body(rows: &[&Row], chunk: &str) -> Markup {
                 li { "Residuals are those of Signorini's and Coulomb's laws, whatever model a solver has. Errors are against closed forms or a second route." }
             }
             div.pair {
-                div #contact-accuracy.plot role="group" aria-label="Plot of residuals against iterations, per solver" {}
-                div #contact-rates.plot role="group" aria-label="Plot of fitted against predicted rates" {}
+                (drawings::accuracy(figures))
+                (drawings::rates(figures))
             }
             div.pair {
-                div #contact-existence.plot role="group" aria-label="Map of how many forces Painlevé's rod has, over its angle and rate" {}
-                div #contact-felt.plot role="group" aria-label="Plot of the friction that a body feels against its heading" {}
+                (drawings::existence(figures))
+                (drawings::felt(figures))
             }
             (views())
             (table(STUDY, rows, &QUANTITIES, chunk))

@@ -1,15 +1,15 @@
 //! Section: how long solvers take for the contacts of standing robots.
 
 use super::{STUDY, TARGET};
+use crate::figures::{drawing, nth, point, told};
+use featherbench_report::figure::{Axis, Point};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, labels, opener};
 use featherbench_results::{Row, RunInfo, Verdict};
 use featherbench_spatial::{larger, smaller};
 use maud::{Markup, html};
-use serde::Serialize;
 
 /// A time of a method on a robot.
-#[derive(Clone, Serialize)]
 struct Time<'a> {
     robot: &'a str,
     contacts: f64,
@@ -31,9 +31,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let Some(first) = rows.first() else { return Vec::new() };
     let chunk = overview.chunk_of(first);
     let times = times(&rows);
-    let body = body(&rows, &times, &chunk);
-    let section = Section { script: include_str!("section/figures.js"), ..Section::new("contact_timing", "Contact timing", body) };
-    vec![section.with_data(&times)]
+    vec![Section::new("contact_timing", "Contact timing", body(&rows, &times, &chunk))]
 }
 
 fn times<'a>(rows: &[&'a Row]) -> Vec<Time<'a>> {
@@ -130,7 +128,7 @@ fn body(rows: &[&Row], times: &[Time], chunk: &str) -> Markup {
                     ul { @for row in &unreached { li { (row.engine) " " (row.method) " on " (row.family) ": " (row.reason) "." } } }
                 }
             }
-            div #contact-times.plot role="group" aria-label="Plot of solution times against contacts, per solver" {}
+            (drawn(times))
             div.scroll {
                 table.compact.sortable {
                     thead {
@@ -145,6 +143,27 @@ fn body(rows: &[&Row], times: &[Time], chunk: &str) -> Markup {
             }
         }
     }
+}
+
+/// The standing quadruped: times of solutions against its contacts.
+fn drawn(times: &[Time]) -> Markup {
+    let mut solvers: Vec<(String, Vec<Point>)> = Vec::new();
+    for time in times.iter().filter(|time| time.robot.starts_with("quadruped")) {
+        let (name, microseconds) = (format!("{} {}", time.engine, time.method), time.ns * 1e-3);
+        let point = point(
+            time.robot,
+            time.contacts,
+            microseconds,
+            [format!("{} contacts", told(time.contacts)), format!("{} µs", told(microseconds))],
+        );
+        match solvers.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, points)) => points.push(point),
+            None => solvers.push((name, vec![point])),
+        }
+    }
+    let series = solvers.into_iter().enumerate().map(|(index, (name, points))| nth(index, name, points)).collect();
+    let (x, y) = (Axis::log("contacts of the quadruped"), Axis::log("time of a solution, µs"));
+    drawing("contact-times", "Solution times against contacts, per solver", x, y, series)
 }
 
 fn line(time: &Time, chunk: &str) -> Markup {

@@ -1,5 +1,7 @@
 //! Section: rods, beams and strings whose answers are known.
 
+mod drawings;
+
 use super::STUDY;
 use crate::known::{passed, table};
 use featherbench_bench::OWN;
@@ -7,14 +9,12 @@ use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo, Verdict};
 use maud::{Markup, html};
-use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// A name with numbers in pairs.
 type Line = (String, Vec<[f64; 2]>);
 
 /// What the section draws.
-#[derive(Serialize)]
 struct Figures {
     /// Of each element and engine: the number of elements, and the magnitude of the tip's error at α = 1.
     tip: Vec<Line>,
@@ -61,8 +61,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
     let Some(first) = rows.first() else { return Vec::new() };
     let chunk = overview.chunk_of(first);
-    let section = Section { script: include_str!("section/figures.js"), ..Section::new("continuum", "Continua", body(&rows, &chunk)) };
-    vec![section.with_data(&figures(&rows))]
+    vec![Section::new("continuum", "Continua", body(&rows, &figures(&rows), &chunk))]
 }
 
 fn figures(rows: &[&Row]) -> Figures {
@@ -142,7 +141,7 @@ fn missing<'a>(rows: &[&'a Row]) -> Vec<&'a str> {
         .collect()
 }
 
-fn body(rows: &[&Row], chunk: &str) -> Markup {
+fn body(rows: &[&Row], figures: &Figures, chunk: &str) -> Markup {
     let (passed, judged) = passed(rows);
     let [within, beyond] = reach(rows);
     let agreement = rows.iter().filter(|row| row.quantity == "beam_agreement").filter_map(|row| Some((name(row), row.value?)));
@@ -167,18 +166,18 @@ fn body(rows: &[&Row], chunk: &str) -> Markup {
                 @for reason in missing(rows) { li { (reason) } }
             }
             div.pair {
-                div #continuum-tip.plot role="group" aria-label="Plot of the tip's error under a large force, against the number of elements" {}
-                div #continuum-frequency.plot role="group" aria-label="Plot of the first frequency's error against the number of elements" {}
+                (drawings::refined("continuum-tip", &figures.tip, "error of the tip at F L²/EI = 1"))
+                (drawings::refined("continuum-frequency", &figures.frequency, "error of the first frequency"))
             }
             div.pair {
-                div #continuum-cost.plot role="group" aria-label="Plot of the first frequency's error against the time of a forward dynamics" {}
-                div #continuum-modes.plot role="group" aria-label="Shapes of the first three modes" {}
+                (drawings::cost(&figures.cost))
+                (drawings::shapes("continuum-modes", "Shapes of the first three modes", &figures.modes, ["x / L", "deflection"]))
             }
             div.pair {
-                div #continuum-elastica.plot role="group" aria-label="Shapes of a cantilever under forces at its tip" {}
-                div #continuum-gripper.plot role="group" aria-label="Shapes of the fingers of a gripper that closes" {}
+                (drawings::shapes("continuum-elastica", "Shapes of a cantilever under forces at its tip", &figures.elastica, ["x / L", "y / L"]))
+                (drawings::shapes("continuum-gripper", "Shapes of the fingers of a gripper that closes", &figures.gripper, ["x, m", "z, m"]))
             }
-            div #continuum-arm.plot role="group" aria-label="Shapes of an arm that falls with a cable at its end" {}
+            (drawings::shapes("continuum-arm", "Shapes of an arm that falls with a cable at its end", &figures.arm, ["x, m", "z, m"]))
             p.note {
                 "The time is that of one forward dynamics of the rod. Times of engines that are called from Python include the call. "
                 "Links with springs are served by the articulated-body algorithm; the other elements of ours factorize M."

@@ -1,12 +1,13 @@
 //! Section: ranks, base parameters and estimates.
 
+mod drawings;
+
 use super::STUDY;
 use crate::known::{passed, table};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
 use maud::{Markup, html};
-use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// What the rows of a quantity are about, in the order of the table.
@@ -26,7 +27,6 @@ const QUANTITIES: [(&str, &str); 9] = [
 type Named<'a> = (&'a str, f64, f64, f64);
 
 /// What the section draws.
-#[derive(Serialize)]
 struct Figures<'a> {
     /// Of each way to a rank: its name, and of each robot its name, unknowns, last kept and first dropped singular value over the largest.
     gaps: Vec<(&'a str, Vec<Named<'a>>)>,
@@ -39,9 +39,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
     let Some(first) = rows.first() else { return Vec::new() };
     let chunk = overview.chunk_of(first);
-    let section =
-        Section { script: include_str!("section/figures.js"), ..Section::new("identification", "Identification", body(&rows, &chunk)) };
-    vec![section.with_data(&figures(&rows))]
+    vec![Section::new("identification", "Identification", body(&rows, &chunk))]
 }
 
 /// The values of a cell, by metric.
@@ -120,6 +118,7 @@ fn ranks(rows: &[&Row]) -> Markup {
 
 fn body(rows: &[&Row], chunk: &str) -> Markup {
     let (right, judged) = passed(rows);
+    let figures = figures(rows);
     let own: Vec<&Row> = rows.iter().filter(|row| row.quantity == "rank" && row.metric == "rank").copied().collect();
     let (ranked, ranks_judged) = passed(&own);
     let witnesses: Vec<&Row> = rows.iter().filter(|row| row.quantity == "witness" && row.value.is_some()).copied().collect();
@@ -148,8 +147,8 @@ fn body(rows: &[&Row], chunk: &str) -> Markup {
                 }
             }
             div.pair {
-                div #identification-gaps.plot role="group" aria-label="Plot of the smallest kept and the largest dropped singular value of each robot" {}
-                div #identification-intervals.plot role="group" aria-label="Plot of each base parameter's error with its interval" {}
+                (drawings::gaps(&figures))
+                (drawings::intervals(&figures))
             }
             (ranks(rows))
             (table(STUDY, rows, &QUANTITIES, chunk))

@@ -1,26 +1,21 @@
 //! Section: a page to read beside the lesson. What it says, what is right, and the number between.
 
 use super::{CORRECTED, LESSON, STUDY, pipeline};
+use crate::figures::{drawing, errors, point, told};
 use crate::known::passed;
 use featherbench_lesson::pipeline::STAGES;
 use featherbench_lesson::{Claim, claims};
+use featherbench_report::figure::{Axis, Series, Style};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, opener};
 use featherbench_results::{Row, RunInfo};
 use maud::{Markup, html};
-use serde::Serialize;
 
 /// A share of the right value below which the lesson's is the same.
 const SAME: f64 = 1e-9;
 
 /// Of each robot its name, and of each stage its name with the errors on the unseen motion and on the log.
 type Stages<'a> = Vec<(&'a str, Vec<(&'a str, f64, f64)>)>;
-
-/// What the section draws.
-#[derive(Serialize)]
-struct Figures<'a> {
-    stages: Stages<'a>,
-}
 
 /// A number that the lesson gives, with the right one.
 struct Pair<'a> {
@@ -69,8 +64,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
     let Some(first) = rows.first() else { return Vec::new() };
     let chunk = overview.chunk_of(first);
-    let section = Section { script: include_str!("section/figures.js"), ..Section::new("lesson", "Lesson", body(&rows, &chunk)) };
-    vec![section.with_data(&Figures { stages: stages(&rows) })]
+    vec![Section::new("lesson", "Lesson", body(&rows, &chunk))]
 }
 
 /// The value of a metric of a case by a method.
@@ -88,6 +82,22 @@ fn stages<'a>(rows: &[&'a Row]) -> Stages<'a> {
         (name, points.collect())
     };
     pipeline::settings().into_iter().map(of).collect()
+}
+
+/// The error of each stage of the pipeline on a motion that none has seen, and on the log.
+fn drawn(settings: &Stages) -> Markup {
+    let mut series = Vec::new();
+    for (index, (name, stages)) in settings.iter().enumerate() {
+        for (motion, dash) in [("unseen motion", 0), ("log", 1)] {
+            let points = stages.iter().enumerate().map(|(at, &(stage, unseen, logged))| {
+                let error = if dash == 0 { unseen } else { logged };
+                point(stage, at as f64, error, [format!("{motion}: {}", told(error))])
+            });
+            series.push(Series { dash, ..Series::new(format!("{name}: {motion}"), Style::nth(index), points.collect()) });
+        }
+    }
+    let names = settings.first().map(|(_, stages)| stages.iter().map(|(stage, ..)| (*stage).to_owned()).collect()).unwrap_or_default();
+    drawing("lesson-stages", "Error of each stage of the pipeline", Axis::named("stage", names), errors("‖τ − τ̂‖/‖τ‖"), series)
 }
 
 /// The claims that the run has rows of.
@@ -116,7 +126,7 @@ fn body(rows: &[&Row], chunk: &str) -> Markup {
                 (count("does not hold")) " do not." } " " (passed) " of " (judged) " judged numbers are as known."
             }
             (findings(rows))
-            div #lesson-stages.plot role="group" aria-label="Plot of the error of each stage of the pipeline on an unseen motion" {}
+            (drawn(&stages(rows)))
             p.note {
                 "Problem 5 as a program: the error ‖τ − τ̂‖/‖τ‖ on a motion that no stage has seen. "
                 (opener(chunk, &[("study", STUDY), ("quantity", pipeline::QUANTITY)], "Rows of the pipeline"))

@@ -1,5 +1,7 @@
 //! Section: robots with loops, in engines.
 
+mod drawings;
+
 use super::STUDY;
 use super::systems::{NEAR, PLANS};
 use crate::known::passed;
@@ -8,11 +10,9 @@ use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, labels, opener};
 use featherbench_results::{Row, RunInfo, Verdict};
 use maud::{Markup, html};
-use serde::Serialize;
 use serde_json::Value;
 
 /// A motion by steps of one length.
-#[derive(Clone, Serialize)]
 struct Point<'a> {
     name: &'a str,
     engine: &'a str,
@@ -26,7 +26,6 @@ struct Point<'a> {
 }
 
 /// The error at an angle beside the flat parallelogram.
-#[derive(Clone, Serialize)]
 struct Near<'a> {
     engine: &'a str,
     method: &'a str,
@@ -35,7 +34,6 @@ struct Near<'a> {
 }
 
 /// What the section draws.
-#[derive(Serialize)]
 struct Figures<'a> {
     /// The motions that have several lengths of steps, by name.
     motions: Vec<&'a str>,
@@ -53,9 +51,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
         points: points(&rows),
         near: near(&rows),
     };
-    let body = body(&rows, &figures, &chunk);
-    let section = Section { script: include_str!("section/figures.js"), ..Section::new("loops", "Loops in engines", body) };
-    vec![section.with_data(&figures)]
+    vec![Section::new("loops", "Loops in engines", body(&rows, &figures, &chunk))]
 }
 
 fn params(row: &Row) -> Option<Value> {
@@ -159,11 +155,9 @@ fn body(rows: &[&Row], figures: &Figures, chunk: &str) -> Markup {
                 li { "Times are of the engine's own clock, with the overhead of calling it through Python. They count on a quiet machine only." }
             }
             div.pair {
-                @for (index, name) in figures.motions.iter().enumerate() {
-                    div id={ "loops-work-" (index) } .plot role="group" aria-label={ "Plot of the error of " (name) " against time, per engine" } {}
-                }
+                @for (index, name) in figures.motions.iter().enumerate() { (drawings::work(figures, index, name)) }
             }
-            div #loops-near.plot role="group" aria-label="Plot of the error of accelerations against the angle beside the singularity" {}
+            (drawings::near(figures))
             (acceleration_table(rows, &lines, chunk))
             (drift_table(figures, chunk))
         }

@@ -1,5 +1,7 @@
 //! Section: residuals with known answers, corrected engines, and learned models.
 
+mod drawings;
+
 use super::STUDY;
 use super::learning::DRIFTS;
 use crate::known::{passed, table};
@@ -7,7 +9,6 @@ use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo, Verdict};
 use maud::{Markup, html};
-use serde::Serialize;
 use std::collections::BTreeSet;
 
 /// What the rows of a quantity are about, in the order of the table.
@@ -23,12 +24,6 @@ const QUANTITIES: [(&str, &str); 9] = [
     ("learning_draws", "learned models, further draws"),
 ];
 
-/// What the section draws: of each noise and model, times and the change of the true energy.
-#[derive(Serialize)]
-struct Figures<'a> {
-    drift: Vec<(&'a str, Vec<Line<'a>>)>,
-}
-
 /// A model: its name, and (time in s, change) of each time that it reached.
 type Line<'a> = (&'a str, Vec<(f64, f64)>);
 
@@ -37,8 +32,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
     let Some(first) = rows.first() else { return Vec::new() };
     let chunk = overview.chunk_of(first);
-    let section = Section { script: include_str!("section/figures.js"), ..Section::new(STUDY, "Residuals", body(&rows, &chunk)) };
-    vec![section.with_data(&Figures { drift: drift(&rows) })]
+    vec![Section::new(STUDY, "Residuals", body(&rows, &chunk))]
 }
 
 /// The different words of a column, in the order of the rows.
@@ -52,6 +46,7 @@ fn words<'a>(rows: &[&'a Row], of: impl Fn(&'a Row) -> &'a str) -> Vec<&'a str> 
     words
 }
 
+/// Of each noise and model, times and the change of the true energy.
 fn drift<'a>(rows: &[&'a Row]) -> Vec<(&'a str, Vec<Line<'a>>)> {
     let rows: Vec<&Row> = rows.iter().filter(|row| row.quantity == "learning").copied().collect();
     let line = |case: &'a str, model: &'a str| {
@@ -151,8 +146,7 @@ fn body(rows: &[&Row], chunk: &str) -> Markup {
                 li { "One sign holds: true = nominal + r, τ = ID(q, v, a) + r(q, v, a)." }
             }
             div.pair {
-                div #residuals-drift-0.plot role="group" aria-label="Plot of the change of the true energy against time, of models learned without noise" {}
-                div #residuals-drift-1.plot role="group" aria-label="Plot of the change of the true energy against time, of models learned with noise" {}
+                @for (place, (case, lines)) in drift(rows).iter().enumerate() { (drawings::drift(place, case, lines)) }
             }
             (models(rows))
             (table(STUDY, rows, &QUANTITIES, chunk))

@@ -1,5 +1,7 @@
 //! Section: what engines make of scenes whose motion is known.
 
+mod drawings;
+
 use super::drawing::drawing;
 use super::{BOUNCE, STUDY};
 use featherbench_report::numbers::short;
@@ -8,10 +10,9 @@ use featherbench_results::{Row, RunInfo, Verdict};
 use featherbench_scenes::library::{BoxOnBalls, BoxStack, Incline, Rod, Standing, Table};
 use featherbench_scenes::{OwnSolver, Question, simulate};
 use maud::{Markup, html};
-use serde::Serialize;
 
 /// A variant with its points.
-#[derive(Clone, Serialize)]
+#[derive(Clone)]
 struct Line<'a> {
     engine: &'a str,
     method: String,
@@ -19,14 +20,12 @@ struct Line<'a> {
 }
 
 /// Errors of a number of a scene over the steps.
-#[derive(Serialize)]
 struct Errors<'a> {
     question: String,
     lines: Vec<Line<'a>>,
 }
 
 /// What the section draws.
-#[derive(Serialize)]
 struct Figures<'a> {
     /// Heading, °, and the felt friction over μ; variants of an engine that feel alike are one line.
     rose: Vec<Line<'a>>,
@@ -41,8 +40,8 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let Some(first) = rows.first() else { return Vec::new() };
     let chunk = overview.chunk_of(first);
     let figures = Figures { rose: rose(&rows), errors: errors(&rows), bounce: bounce(&rows) };
-    let section = Section { script: include_str!("section/figures.js"), ..Section::new("scenes", "Scenes", body(&rows, &figures, &chunk)) };
-    vec![section.with_data(&figures)]
+    let (questions, parts) = drawings::questions(&figures.errors);
+    vec![Section { parts, ..Section::new("scenes", "Scenes", body(&rows, &figures, &questions, &chunk)) }]
 }
 
 /// A number of a row's parameters.
@@ -152,7 +151,7 @@ const COLUMNS: [(&str, &str, &str); 16] = [
     ("bouncing_ball", "felt_restitution", "restitution"),
 ];
 
-fn body(rows: &[&Row], figures: &Figures, chunk: &str) -> Markup {
+fn body(rows: &[&Row], figures: &Figures, questions: &Markup, chunk: &str) -> Markup {
     let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
     let laws: Vec<&&Row> = rows.iter().filter(|row| row.metric == "law_error" && row.verdict == Verdict::Pass).collect();
     let diagonal: Vec<String> = figures.rose.iter().filter_map(|line| felt_at(line, 45.0)).collect();
@@ -194,13 +193,10 @@ fn body(rows: &[&Row], figures: &Figures, chunk: &str) -> Markup {
             }
             (heat(rows, chunk))
             div.pair {
-                div #scenes-rose.plot role="group" aria-label="Rose of the friction that a sled feels, over its heading" {}
-                div {
-                    p { label for="scenes-question" { "error of " } select #scenes-question {} }
-                    div #scenes-errors.plot role="group" aria-label="Plot of errors against the step, per engine and variant" {}
-                }
+                (drawings::rose(&figures.rose))
+                div { (questions) }
             }
-            div #scenes-bounce.plot role="group" aria-label="Plot of the error of the derivative of a bounce against the step" {}
+            (drawings::bounce(&figures.bounce))
             (views())
         }
     }

@@ -1,18 +1,19 @@
 //! Section: the limit of small steps: how the acceleration of a step approaches the true one, and how steps change the energy.
 
+mod drawings;
+
 use std::collections::BTreeMap;
 
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, labels, opener, robot_chunk};
 use featherbench_results::{Row, RunInfo, Verdict};
 use maud::{Markup, html};
-use serde::Serialize;
 
 /// The study's name in rows.
 const STUDY: &str = "steps";
 
 /// Errors of one engine's method to step on one robot.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub struct StepLine<'a> {
     /// Index of the robot.
     pub robot: usize,
@@ -29,7 +30,6 @@ pub struct StepLine<'a> {
     /// The fitted order, if the run has it.
     pub order: Option<f64>,
     /// The verdict on the order.
-    #[serde(skip)]
     verdict: Option<Verdict>,
 }
 
@@ -75,14 +75,16 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     if lines.is_empty() {
         return Vec::new();
     }
-    vec![Section { script: include_str!("section.js"), ..Section::new("steps", "Steps", body(overview, &lines)).with_data(&lines) }]
-}
-
-fn body(overview: &Overview, lines: &[StepLine]) -> Markup {
     let mut robots: Vec<usize> = lines.iter().map(|line| line.robot).collect();
     robots.dedup();
     // The robot with the most lines, and of these the largest: it shows the most.
-    let opening = robots.iter().max_by_key(|&&robot| (lines.iter().filter(|line| line.robot == robot).count(), overview.robots[robot].nv));
+    let count = |robot: usize| lines.iter().filter(|line| line.robot == robot).count();
+    let opening = robots.iter().copied().max_by_key(|&robot| (count(robot), overview.robots[robot].nv)).unwrap_or(0);
+    let (drawn, parts) = drawings::drawings(overview, &lines, &robots, opening);
+    vec![Section { parts, ..Section::new("steps", "Steps", body(overview, &lines, &drawn)) }]
+}
+
+fn body(overview: &Overview, lines: &[StepLine], drawn: &Markup) -> Markup {
     html! {
         section #steps {
             h2 { "Steps" }
@@ -90,15 +92,7 @@ fn body(overview: &Overview, lines: &[StepLine]) -> Markup {
                 "Engines that integrate answer with the acceleration of a step, the true one in the limit of small steps. Left: its error against the length of the step. "
                 "Right: how far the energy drifts in a motion under gravity alone."
             }
-            div.controls {
-                label { "Robot " select #steps-robot {
-                    @for &robot in &robots { option value=(robot) selected[Some(&robot) == opening] { (overview.robots[robot].name) } }
-                } }
-            }
-            div.pair {
-                div #steps-plot.plot role="group" aria-label="Plot of the acceleration's error against the step" {}
-                div #drift-plot.plot role="group" aria-label="Plot of the energy's drift against the step" {}
-            }
+            (drawn)
             div.scroll.tall {
                 table.compact.sortable {
                     thead {

@@ -33,6 +33,7 @@ pub use machine::multiply_adds_per_ns;
 use machine::{Machine, Pinned};
 use protocol::{Budget, Ready};
 use samples::Candidate;
+pub use section::{InstructionCounts, instructions};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 use serde_json::{Value, json};

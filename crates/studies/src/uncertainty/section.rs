@@ -1,5 +1,7 @@
 //! Section: what uncertain parameters do, where the answer is known.
 
+mod drawings;
+
 use super::STUDY;
 use super::rates::SIZES;
 use crate::known::{passed, table};
@@ -7,13 +9,11 @@ use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
 use maud::{Markup, html};
-use serde::Serialize;
 
 /// A kind of points: its name, its slope, and (samples, error of the mean).
 type Rate<'a> = (&'a str, f64, Vec<(usize, f64)>);
 
 /// What the section draws.
-#[derive(Serialize)]
 struct Figures<'a> {
     /// Of each kind of points.
     rates: Vec<Rate<'a>>,
@@ -44,8 +44,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let Some(first) = rows.first() else { return Vec::new() };
     let chunk = overview.chunk_of(first);
     let figures = Figures { rates: rates(&rows), density: density(&rows), arm: arm(&rows) };
-    let section = Section { script: include_str!("section/figures.js"), ..Section::new("uncertainty", "Uncertainty", body(&rows, &chunk)) };
-    vec![section.with_data(&figures)]
+    vec![Section::new("uncertainty", "Uncertainty", body(&rows, &figures, &chunk))]
 }
 
 /// The value of a metric of a case.
@@ -81,13 +80,13 @@ fn arm(rows: &[&Row]) -> Vec<[f64; 2]> {
     rows.iter().filter(|row| row.quantity == "arm" && row.metric == "deviation").filter_map(of).collect()
 }
 
-fn body(rows: &[&Row], chunk: &str) -> Markup {
+fn body(rows: &[&Row], figures: &Figures, chunk: &str) -> Markup {
     let (passed, judged) = passed(rows);
     let of = |quantity, family, method, metric| value(rows, quantity, family, method, metric);
     let shortfall = of("ratio", "1/m, uniform", "first_order", "variance_shortfall");
     let (mean, spread) = (of("drop", "drop", "quadrature", "mean"), of("drop", "drop", "quadrature", "deviation"));
     let (weight, straight) = (of("drop", "drop", "quadrature", "weight"), of("drop", "drop", "first_order", "mean"));
-    let slopes = rates(rows);
+    let slopes = &figures.rates;
     html! {
         section #uncertainty {
             h2 { "Uncertainty" }
@@ -111,10 +110,10 @@ fn body(rows: &[&Row], chunk: &str) -> Markup {
                 li { "A deviation is a difference to the known value in standard errors. Results of one thread and of two are the same to the bit." }
             }
             div.pair {
-                div #uncertainty-rates.plot role="group" aria-label="Plot of errors of a mean against samples, random and scrambled Sobol' points" {}
-                div #uncertainty-arm.plot role="group" aria-label="Plot of deviations of joints' accelerations, samples against first order" {}
+                (drawings::rates(figures))
+                (drawings::arm(figures))
             }
-            div #uncertainty-density.plot role="group" aria-label="Plot of the density of velocities after an impact" {}
+            (drawings::density(figures))
             (table(STUDY, rows, &QUANTITIES, chunk))
         }
     }

@@ -1,7 +1,7 @@
 //! The sections of the studies with the truth: they appear only with their rows, show these, and do not change the other sections.
 
 use featherbench_results::{Relation, Row, RunInfo, Verdict};
-use serde_json::Value;
+use std::fs;
 
 use super::written::Written;
 use super::{made_up, report};
@@ -19,19 +19,32 @@ fn has(written: &Written, section: &str) -> bool {
     section_is_there
 }
 
-/// The curve of an answer along an axis of a family.
-fn curve<'a>(figures: &'a Value, overview: &Value, axis: &str, family: &str, answer: [&str; 3]) -> &'a Value {
-    let digits = &figures["accuracy"];
-    let is_answer = |about: &Value| {
-        [&overview["engines"][about["engine"].as_u64().unwrap() as usize], &about["method"], &about["quantity"]]
-            .iter()
-            .zip(answer)
-            .all(|(found, wanted)| *found == wanted)
-    };
-    let index = digits["answers"].as_array().unwrap().iter().position(is_answer).unwrap_or_else(|| panic!("no {answer:?}"));
-    let curves = digits["curves"].as_array().unwrap();
-    let found = curves.iter().find(|curve| curve["axis"] == axis && curve["family"] == family && curve["answer"] == index);
-    found.unwrap_or_else(|| panic!("no curve of {answer:?} against {axis} in {family}"))
+/// The section on accuracy with all its drawings.
+fn accuracy(written: &Written) -> String {
+    let parts =
+        (1..).map_while(|part| fs::read_to_string(written.folder.path().join(format!("sections/accuracy-choices-{part}.html"))).ok());
+    [written.section("accuracy")].into_iter().chain(parts).collect()
+}
+
+/// What is shown for a choice: its drawing, and the table of fitted exponents.
+fn chosen<'a>(text: &'a str, values: [&str; 3]) -> &'a str {
+    let opening = format!("data-choice=\"{}\"", values.join("\t"));
+    let shown = text.split(&opening).nth(1).unwrap_or_else(|| panic!("no {values:?}"));
+    shown.split("data-choice=").next().unwrap()
+}
+
+/// The numbers in the line of a method in the table of fitted exponents: robots, p, p at the end, error at the end.
+fn growth<'a>(shown: &'a str, method: &str) -> Vec<&'a str> {
+    let line = shown.split("<th scope=\"row\">").find_map(|line| line.strip_prefix(&format!("{method}</th>")));
+    let line = line.unwrap_or_else(|| panic!("no {method}: {shown}"));
+    line.split("</tr>").next().unwrap().split("<td class=\"number\">").skip(1).map(|cell| cell.split('<').next().unwrap()).collect()
+}
+
+/// The marks of a series: their places across and upwards.
+fn places(shown: &str, series: usize) -> Vec<(f64, f64)> {
+    let group = shown.split("<g class=\"series\"").nth(series + 1).unwrap();
+    let values = group.split("data-value=\"").skip(1).map(|rest| rest.split('"').next().unwrap());
+    values.map(|pair| pair.split_once(' ').unwrap()).map(|(x, y)| (x.parse().unwrap(), y.parse().unwrap())).collect()
 }
 
 #[test]
@@ -54,8 +67,6 @@ fn the_other_sections_stay_as_they_were() {
     for id in ["agreement", "depth", "time", "pairs"] {
         assert_eq!(without.section(id), with.section(id), "{id}");
     }
-    let (without, with_data) = (without.data("figures"), with.data("figures"));
-    assert_eq!((&without["depth"], &without["time"]), (&with_data["depth"], &with_data["time"]));
     let engines = with.data("overview")["engines"].clone();
     assert!(engines.as_array().unwrap().iter().all(|name| name != "all"), "nobody is called all: {engines}");
     assert!(!with.section("verdict").contains("<th scope=\"row\">all</th>"));
@@ -64,22 +75,22 @@ fn the_other_sections_stay_as_they_were() {
 #[test]
 fn growth_is_what_the_methods_were_made_with() {
     let (_, written) = of_studies(&["accuracy"]);
-    let (figures, overview) = (written.data("figures"), written.data("overview"));
-    let slope = |axis, family, answer| curve(&figures, &overview, axis, family, answer)["fit"]["slope"].as_f64().unwrap();
+    let text = accuracy(&written);
+    let slope = |values, method: &str| -> f64 { growth(chosen(&text, values), method)[1].split(' ').next().unwrap().parse().unwrap() };
+    // A fit of rounding errors: within a twentieth of the exponent that the numbers were made with.
     let close = |found: f64, expected: f64| assert!((found - expected).abs() < 0.05, "{found}, not {expected}");
-    close(slope("offset", "rand3d-20", ["pinocchio", "aba_world", "fd"]), 2.0);
-    close(slope("offset", "rand3d-20", ["featherbench", "aba", "fd"]), 0.0);
-    close(slope("offset", "rand3d-20", ["mujoco", "forward", "fd"]), 1.0);
-    close(slope("depth", "chain_2d", ["featherbench", "ltdl", "fd"]), 4.0);
+    close(slope(["fd", "offset", "rand3d-20"], "pinocchio aba_world"), 2.0);
+    close(slope(["fd", "offset", "rand3d-20"], "featherbench aba"), 0.0);
+    close(slope(["fd", "offset", "rand3d-20"], "mujoco forward"), 1.0);
+    close(slope(["fd", "depth", "chain_2d"], "featherbench ltdl"), 4.0);
     // Lighter tips cost no digits. They are in the plot and not in the fit; the robot itself is at one.
-    let tips = curve(&figures, &overview, "tip", "rand3d-20", ["featherbench", "aba", "fd"]);
-    close(tips["fit"]["slope"].as_f64().unwrap(), 1.0);
-    assert_eq!(tips["span"], serde_json::json!([1.0, 1e6]));
-    let places: Vec<f64> = tips["points"].as_array().unwrap().iter().map(|point| point[0].as_f64().unwrap()).collect();
-    assert_eq!(places, [1e-3, 1.0, 1e3, 1e6]);
-    // A line connects entries of M, or products, but not both.
-    let matrix = curve(&figures, &overview, "depth", "chain_2d", ["featherbench", "crba", "mass_matrix"]);
-    assert_eq!((matrix["points"].as_array().unwrap().len(), &matrix["fit"]["points"]), (6, &5.into()));
+    let tips = ["fd", "tip", "rand3d-20"];
+    close(slope(tips, "featherbench aba"), 1.0);
+    let found: Vec<f64> = places(chosen(&text, tips), 0).into_iter().map(|(x, _)| x).collect();
+    assert_eq!(found, [1e-3, 1.0, 1e3, 1e6]);
+    // Entries of M, and products with it, are marks of one series; the last of each engine is hollow.
+    let matrix = chosen(&text, ["mass_matrix", "depth", "chain_2d"]);
+    assert_eq!((growth(matrix, "featherbench crba")[0], matrix.matches("seen through products").count()), ("6", 2), "{matrix}");
     assert!(written.section("accuracy").contains("<td class=\"number\">1.9") || written.section("accuracy").contains("2.00 ±"));
 }
 
@@ -162,29 +173,30 @@ fn a_deviation_is_neither_kept_nor_failed() {
 #[test]
 fn work_against_precision_has_its_front() {
     let (_, written) = of_studies(&["accuracy", "timing"]);
-    let (figures, overview) = (written.data("figures"), written.data("overview"));
-    let points = figures["tradeoff"].as_array().unwrap();
+    let section = written.section("tradeoff");
+    let table: Vec<&str> = section.split("<tr><th scope=\"row\">").collect();
     let of_model = |name: &str| -> Vec<(&str, bool)> {
-        let of = |point: &&Value| overview["robots"][point["robot"].as_u64().unwrap() as usize]["name"] == name;
-        points.iter().filter(of).map(|point| (point["method"].as_str().unwrap(), point["front"].as_bool().unwrap())).collect()
+        let rows = table.iter().filter(|row| row.starts_with(&format!("{name}</th><td>featherbench</td>")));
+        rows.map(|row| (row.split("<td>").nth(2).unwrap().split('<').next().unwrap(), row.contains("unbeaten"))).collect()
     };
     // On two joints the factorization is faster and less accurate: both are on the front. On a hundred it is slower and less accurate.
     assert_eq!(of_model("chain_2d_2"), [("ltdl", true), ("aba", true)]);
     assert_eq!(of_model("chain_2d_100"), [("aba", true), ("ltdl", false)]);
-    assert!(points.iter().all(|point| overview["engines"][point["engine"].as_u64().unwrap() as usize] == "featherbench"));
-    let section = written.section("tradeoff");
-    assert_eq!(section.matches("● unbeaten").count(), points.iter().filter(|point| point["front"] == true).count());
+    // The marks of all robots say the same: some are on the page, the others in a part.
+    let others = fs::read_to_string(written.folder.path().join("sections/tradeoff-choices-1.html")).unwrap();
+    let marks = |words: &str| [&section, &others].map(|text| text.matches(words).count()).iter().sum::<usize>();
+    assert_eq!(marks("\nunbeaten"), section.matches("● unbeaten").count());
+    assert_eq!(marks("data-rows="), table.iter().filter(|row| row.contains("</th><td>featherbench</td>")).count());
 }
 
 #[test]
 fn conditioning_shows_local_exponents_and_the_floor() {
     let (_, written) = of_studies(&["conditioning"]);
-    let families = written.data("figures")["conditioning"]["families"].clone();
-    assert_eq!(families.as_array().unwrap().len(), 1);
-    assert!((families[0]["raw"]["slope"].as_f64().unwrap() - 4.0).abs() < 1e-9, "{families}");
-    assert!((families[0]["scaled"]["slope"].as_f64().unwrap() - 4.25).abs() < 1e-9);
     let section = written.section("conditioning");
-    for words in ["straight-64", "5.033e7", "6.400e-15", "</span> 4.000", "4.250"] {
+    // The exponents of the fits stand in the legend.
+    for words in
+        ["κ(M), p = 4.00", "κ scaled, p = 4.25", "conditioning bound", "straight-64", "5.033e7", "6.400e-15", "</span> 4.000", "4.250"]
+    {
         assert!(section.contains(words), "{words}: {section}");
     }
 }
@@ -215,12 +227,9 @@ fn conditioning_shows_the_blocks_of_floating_bases() {
         Row { robot: run.robots[1].name.clone(), ..blank.clone() }.without_value(Verdict::Error, "it floats away"),
     ];
     let written = report(&run, &records);
-    let figures = &written.data("figures")["conditioning"];
-    assert_eq!(figures["families"], serde_json::json!([]));
-    let bases = figures["bases"].as_array().unwrap();
-    assert_eq!(bases.len(), 2);
-    assert_eq!(bases[0]["kappa"], serde_json::json!([4e6, 500.0, 30.0, 20.0, 2e6, null]));
     let section = written.section("conditioning");
+    // A complement without κ after scaling has no place.
+    assert_eq!([0, 1, 2].map(|series| places(&section, series)), [vec![(4e6, 500.0)], vec![(30.0, 20.0)], vec![]]);
     for words in ["floating-base-plot", "4.00e6", "5.00e2", "</span> 5.00e-1", "</span> 3.00e-12", "it floats away"] {
         assert!(section.contains(words), "{words}: {section}");
     }
@@ -249,13 +258,11 @@ fn steps_become_lines_and_orders() {
     let records = [at("0.001", 2e-3), at("0.01", 2e-2), at("1e-10", 2e-10), order, judged, other, drift];
 
     let written = report(&run, &records);
-    let lines = &written.data("figures")["steps"];
-    let kinds: Vec<_> =
-        lines.as_array().unwrap().iter().map(|line| (line["method"].as_str().unwrap(), line["energy"].as_bool().unwrap())).collect();
-    assert_eq!(kinds, [("step", false), ("step_default", false), ("step", true)]);
-    assert_eq!(lines[0]["points"], serde_json::json!([[0.01, 2e-2], [0.001, 2e-3], [1e-10, 2e-10]]));
-    assert_eq!((&lines[0]["order"], &lines[1]["order"]), (&serde_json::json!(1.25), &serde_json::Value::Null));
     let section = written.section("steps");
+    // Two lines of accelerations, then one of the energy.
+    assert_eq!(places(&section, 0), [(0.01, 2e-2), (0.001, 2e-3), (1e-10, 2e-10)]);
+    assert_eq!([1, 2].map(|series| places(&section, series)), [vec![(0.001, 0.5)], vec![(0.01, 0.125)]]);
+    assert!(section.contains("step · random, p = 1.250") && section.matches("p = ").count() == 1, "{section}");
     assert!(section.contains("1.2500") && section.contains("badge fail"), "{section}");
     assert!(written.index.contains("<a href=\"#steps\">"));
 

@@ -1,19 +1,12 @@
-// Accuracy: the median error against the truth along one axis, and the table of all medians.
+// Accuracy: the table of all medians. The drawings follow the list of quantities by themselves.
 featherbench.ready(() => {
-  const { byId, chunks, decades, make, short, variable } = featherbench;
-  const { ink, dash, draw, exponent, fitted, joined, layout, least, live, mark, ZERO } = featherbench.plots;
-  const { power } = featherbench.axes;
+  const { byId, chunks, decades, short } = featherbench;
   const overview = chunks.get("overview");
   const accuracy = chunks.get("figures")?.accuracy;
   const table = byId("accuracy-table");
   if (!overview || !accuracy || !table) return;
 
   const ULP = 2 ** -52;
-  const AXES = {
-    depth: "depth: joints from the base to the farthest leaf",
-    tip: "mass at the tip, over the usual",
-    offset: "distance of the base from the world's origin, m",
-  };
   const quantities = [...new Set(accuracy.answers.map((answer) => answer.quantity))];
   const cells = new Map(accuracy.cells.map((cell) => [`${cell.robot} ${cell.answer}`, cell]));
   const chosen = () => byId("accuracy-quantity").value;
@@ -40,60 +33,6 @@ featherbench.ready(() => {
     if (cell.verdict !== null) found.push(`${featherbench.glyphs[cell.verdict]} ${cell.verdict}${cell.margin === null ? "" : `, ${decades(cell.margin)} decades`}`);
     return found;
   }
-
-  // --- The plot.
-
-  const curvesOf = (quantity, axis) => accuracy.curves.filter((curve) => curve.axis === axis && accuracy.answers[curve.answer].quantity === quantity);
-
-  // The families of an axis; the choice stays where the new list has it, and falls to the one with the most to show.
-  function fillFamilies() {
-    const select = byId("accuracy-family");
-    const before = select.value;
-    const points = new Map();
-    for (const curve of curvesOf(chosen(), byId("accuracy-axis").value)) points.set(curve.family, (points.get(curve.family) ?? 0) + curve.points.length);
-    select.replaceChildren(...[...points.keys()].map((family) => make("option", { value: family }, family)));
-    const most = [...points].reduce((best, entry) => (entry[1] > best[1] ? entry : best), ["", 0])[0];
-    select.value = points.has(before) ? before : most;
-  }
-
-  function drawErrors() {
-    const axis = byId("accuracy-axis").value;
-    const family = byId("accuracy-family").value;
-    const curves = curvesOf(chosen(), axis).filter((curve) => curve.family === family);
-    const methods = new Map();
-    const floors = new Map();
-    const series = [];
-    for (const curve of curves) {
-      const answer = accuracy.answers[curve.answer];
-      const index = methods.get(answer.engine) ?? 0;
-      methods.set(answer.engine, index + 1);
-      const points = curve.points.map(([x, cell]) => ({ x, ...accuracy.cells[cell] }));
-      for (const { x, floor } of points) if (floor !== null) floors.set(x, floor);
-      series.push({
-        name: joined(engine(answer), answer.method, answer.scalar === "f64" ? "" : answer.scalar), note: exponent(curve.fit?.slope), ink: ink(answer.engine),
-        line: { width: 1.3, dash: dash(index) }, mark: { symbol: mark(answer.engine, index), size: 8 }, broad: curve.fit ? fitted(curve.fit, curve.span) : [],
-        points: points.map((point) => ({
-          x: point.x, y: least(point.median), low: least(point.q1), high: least(point.q3), hollow: point.median < ZERO || point.quantity !== answer.quantity,
-          tip: lines(point), target: { robot: point.robot, filters: filters(point) },
-        })),
-      });
-    }
-    if (floors.size > 0) {
-      series.push({
-        name: "conditioning bound", ink: variable("--ink"), line: { width: 1.5, dash: "dash" }, mark: { symbol: "tick", size: 10 },
-        points: [...floors].sort(([a], [b]) => a - b).map(([x, floor]) => ({ x, y: floor, tip: [`conditioning bound ${short(floor)}`] })),
-      });
-    }
-    series.push({ name: "2⁻⁵²", ink: variable("--soft"), guide: ULP, line: { width: 1.2, dash: "dot" } });
-    const shape = layout(AXES[axis], `median relative error: ${title(chosen())}`, true);
-    // Ticks at the robots themselves: between them there is nothing.
-    const places = [...new Set(curves.flatMap((curve) => curve.points.map(([x]) => x)))].sort((a, b) => a - b);
-    shape.x.ticks = places.map((x) => (x >= 1e-2 && x < 1e4 ? [x, String(x)] : [x, ...power(x)]));
-    draw("accuracy-plot", series, shape);
-    for (const row of byId("accuracy-growth").tBodies[0].rows) row.hidden = !curves.includes(accuracy.curves[row.dataset.k]);
-  }
-
-  // --- The table.
 
   // As the page made them: a quantity's answers, then its conditioning bound where it has one.
   const columns = quantities.flatMap((quantity) => {
@@ -132,9 +71,4 @@ featherbench.ready(() => {
   byId("accuracy-filter").addEventListener("input", filter);
   byId("accuracy-quantity").addEventListener("change", filter);
   filter();
-  if (byId("accuracy-plot")) {
-    fillFamilies();
-    for (const id of ["accuracy-quantity", "accuracy-axis"]) byId(id).addEventListener("change", fillFamilies);
-    live(drawErrors, "accuracy-quantity", "accuracy-axis", "accuracy-family");
-  }
 });

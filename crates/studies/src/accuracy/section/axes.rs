@@ -1,10 +1,7 @@
 //! The axis along which a family of robots varies, from a robot's name: its depth, the mass at its tip, the offset of its base.
 
-use serde::Serialize;
-
 /// The horizontal axis of an accuracy plot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Axis {
     /// Joints from the base to the farthest leaf.
     Depth,

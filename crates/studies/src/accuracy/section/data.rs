@@ -26,6 +26,7 @@ pub struct Accuracy<'a> {
     /// The table's cells, by robot and answer.
     pub cells: Vec<Cell<'a>>,
     /// The growth of errors.
+    #[serde(skip)]
     pub curves: Vec<Curve<'a>>,
     /// The rows that report engines limited by the reference.
     #[serde(skip)]
@@ -73,7 +74,7 @@ pub struct Cell<'a> {
 }
 
 /// An answer's errors along one axis of one family.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub struct Curve<'a> {
     /// The axis.
     pub axis: Axis,

@@ -76,6 +76,7 @@ fn curve(
         x: Axis::log(axis),
         y: Axis::log(format!("largest relative error of {title}")),
         series: answers.iter().map(series).filter(|series| !series.points.is_empty()).collect(),
+        ..Plot::default()
     };
     let mut worst: Vec<(f64, String)> = Vec::new();
     for (engine, _, answers) in answers {
@@ -125,6 +126,7 @@ fn distribution(overview: &Overview, rows: &[Row]) -> Option<Figure> {
         x: Axis::log("relative error"),
         y: Axis::linear("share of answers with at most this error"),
         series: errors.into_iter().map(series).collect(),
+        ..Plot::default()
     };
     plot.figure("error-distribution", caption)
 }

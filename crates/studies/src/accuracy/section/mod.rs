@@ -2,17 +2,17 @@
 
 mod axes;
 mod data;
+mod drawings;
 mod figures;
 mod truth;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use featherbench_report::numbers::{scientific, short};
+use featherbench_report::numbers::scientific;
 use featherbench_report::{Finding, Overview, Section, engine, labels, robot, swatch};
 use featherbench_results::{Row, RunInfo, Verdict};
 use maud::{Markup, html};
 
-use axes::Axis;
 use data::{Accuracy, Cell, lost};
 use truth::Truth;
 
@@ -38,14 +38,16 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
         return Vec::new();
     }
     let truth = Truth::of(overview, &accuracy, rows);
+    let (drawn, parts) = drawings::drawings(overview, &accuracy);
     vec![Section {
         script: include_str!("accuracy.js"),
+        parts,
         style: include_str!("accuracy.css"),
         finding: Some(Finding { rank: 0, body: truth::markup(overview, &accuracy, &truth) }),
         quantities: accuracy.quantities().into_iter().map(str::to_owned).collect(),
         terms: TERMS,
         figures: figures::figures(overview, rows),
-        ..Section::new("accuracy", "Accuracy", body(overview, &accuracy)).with_data(&accuracy)
+        ..Section::new("accuracy", "Accuracy", body(overview, &accuracy, &drawn)).with_data(&accuracy)
     }]
 }
 
@@ -73,7 +75,7 @@ pub(crate) fn errors<'a>(overview: &Overview<'a>, rows: &'a [Row], quantity: &st
     cells.iter().filter_map(of).collect()
 }
 
-fn body(overview: &Overview, accuracy: &Accuracy) -> Markup {
+fn body(overview: &Overview, accuracy: &Accuracy, drawn: &Markup) -> Markup {
     html! {
         section #accuracy {
             h2 { "Accuracy: who is right" }
@@ -82,29 +84,13 @@ fn body(overview: &Overview, accuracy: &Accuracy) -> Markup {
                 "Forward dynamics in the 2-norm, as published tables have it; inverse dynamics and M entry by entry in their unit-free measures."
             }
             (truth::warning(overview, accuracy))
-            div.controls {
-                label { "Quantity " select #accuracy-quantity {
-                    @for quantity in accuracy.quantities() { option value=(quantity) { (labels::quantity(quantity)) } }
-                } }
-                @if !accuracy.curves.is_empty() {
-                    label { "Against " select #accuracy-axis {
-                        @for axis in axes(accuracy) { option value=(axis.name()) { (axis.title()) } }
-                    } }
-                    label { "Family " select #accuracy-family {} }
-                }
-            }
+            (drawn)
             @if !accuracy.curves.is_empty() {
-                div #accuracy-plot.plot role="group" aria-label="Plot of the median error against the truth" {}
                 p.note {
                     "Marks: the median over the states, with bars from the first to the third quartile. Dashed: the conditioning bound, what half a unit in the last "
                     "place of every input can do to the answer when all of it adds up; chance leaves about a tenth of it. Dotted: 2⁻⁵², where no digit is lost. "
                     "p: the fitted exponent, over errors of at least 2⁻⁵³, and of a tip's mass over ratios of at least one. Hollow marks on the plot's lower edge are errors below 10⁻¹⁸, "
                     "others are of M seen through products, where all its entries would be too many."
-                }
-                details open {
-                    summary { "Growth: fitted exponents" }
-                    p.note { "Error ∝ xᵖ by least squares on logarithms, with the standard error of p; beside it the exponent between the last two robots, where what grows has left the rest behind." }
-                    div.scroll.tall { (growth(overview, accuracy)) }
                 }
             }
             h3 { "Median errors" }
@@ -115,39 +101,6 @@ fn body(overview: &Overview, accuracy: &Accuracy) -> Markup {
             (legend())
             div.heat-frame tabindex="-1" { (table(overview, accuracy)) }
             p.note { "Point at a number for quartiles and the largest error; click it, or walk with the arrow keys and press Enter, for its rows." }
-        }
-    }
-}
-
-fn axes(accuracy: &Accuracy) -> Vec<Axis> {
-    let used: BTreeSet<Axis> = accuracy.curves.iter().map(|curve| curve.axis).collect();
-    Axis::ALL.into_iter().filter(|axis| used.contains(axis)).collect()
-}
-
-fn growth(overview: &Overview, accuracy: &Accuracy) -> Markup {
-    html! {
-        table #accuracy-growth.compact.sortable {
-            thead {
-                tr {
-                    th scope="col" { "engine and method" } th scope="col" { "quantity" } th scope="col" { "against" } th scope="col" { "family" }
-                    th.number scope="col" { "robots" } th.number scope="col" { "p" } th.number scope="col" { "p at the end" } th.number scope="col" { "error at the end" }
-                }
-            }
-            tbody {
-                @for (index, curve) in accuracy.curves.iter().enumerate() {
-                    @let end = curve.points.last().and_then(|&(_, cell)| accuracy.cells[cell].median);
-                    tr data-k=(index) {
-                        th scope="row" { (accuracy.linked(overview, curve.answer)) }
-                        td { (labels::quantity(accuracy.answers[curve.answer].quantity)) }
-                        td { (curve.axis.title()) }
-                        td { (curve.family) }
-                        td.number { (curve.points.len()) }
-                        td.number { @if let Some(fit) = curve.fit { (format!("{:.2} ± {:.2}", fit.slope, fit.error)) } @else { "too few" } }
-                        td.number { @if let Some(last) = curve.last { (format!("{last:.2}")) } }
-                        td.number { @if let Some(end) = end { (short(end)) } }
-                    }
-                }
-            }
         }
     }
 }

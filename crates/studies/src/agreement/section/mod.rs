@@ -27,6 +27,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let matrix = JointMatrix::of(overview, &cells.quantities, rows);
     let plots = depth::plots(overview, rows);
     let (body, parts) = heatmap::markup(overview, &cells, &who);
+    let (depth, drawn) = depth::markup(overview, &plots);
     let mut sections = vec![
         Section {
             parts,
@@ -35,7 +36,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
             quantities: cells.quantities.iter().map(|&name| name.to_owned()).collect(),
             ..Section::new("agreement", "Agreement", body).with_data(&cells.data())
         },
-        Section { script: include_str!("depth.js"), ..Section::new("depth", "Error", depth::markup(&plots)).with_data(&plots) },
+        Section { parts: drawn, script: include_str!("depth.js"), ..Section::new("depth", "Error", depth) },
         Section { style: include_str!("pairs.css"), ..Section::new("pairs", "Pairs", pairs::markup(overview, rows)) },
     ];
     if !matrix.rows.is_empty() {

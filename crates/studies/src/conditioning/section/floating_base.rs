@@ -7,23 +7,19 @@ use crate::conditioning::floating_base::{METHOD, METRICS};
 use featherbench_report::{Overview, labels, opener, robot_chunk};
 use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
-use serde::Serialize;
 
 /// One robot.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default)]
 pub struct Base<'a> {
     /// Index of the robot.
     pub robot: usize,
     /// κ of M, S_bb and S_jj, each raw and scaled, in the order of [`METRICS`].
     pub kappa: [Option<f64>; METRICS.len()],
     /// The largest error of a complement, with its verdict.
-    #[serde(skip)]
     error: Option<(f64, Verdict)>,
     /// The larger of κ(S_bb)/κ(M) and κ(S_jj)/κ(M), with its verdict.
-    #[serde(skip)]
     ratio: Option<(f64, Verdict)>,
     /// Why there is no number.
-    #[serde(skip)]
     reason: &'a str,
 }
 
@@ -53,7 +49,7 @@ pub(super) fn body(overview: &Overview, bases: &[Base]) -> Markup {
             "S_jj = M_jj − M_jb M_bb⁻¹ M_bj is what the joints meet while the base floats. Each point is the condition number of one matrix of one robot: "
             "to the right before, upwards after scaling to a unit diagonal."
         }
-        div #floating-base-plot.plot role="group" aria-label="Plot of condition numbers after scaling to a unit diagonal against those before" {}
+        (super::drawings::bases(overview, bases))
         div.scroll {
             table.compact.sortable {
                 thead {

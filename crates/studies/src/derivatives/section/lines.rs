@@ -5,11 +5,10 @@ use featherbench_report::numbers::{larger, short};
 use featherbench_report::{Overview, labels, opener, robot_chunk};
 use featherbench_results::Row;
 use maud::{Markup, html};
-use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// Errors of one engine's kind of method on one robot.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub(super) struct Line<'a> {
     /// Index of the robot.
     pub robot: usize,

@@ -1,6 +1,7 @@
 //! Section: which engine's derivatives are right, on which joint; what the step of finite differences costs; the cost of an entry.
 
 mod cost;
+mod drawings;
 mod joints;
 mod lines;
 
@@ -52,13 +53,17 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     }
     let accounts = accounts(overview, &own);
     let lines = lines(overview, &own);
+    let mut robots: Vec<usize> = lines.iter().map(|line| line.robot).collect();
+    robots.dedup();
+    let opening = robots.iter().copied().max_by_key(|&robot| overview.robots[robot].nv);
+    let (drawn, parts) = opening.map(|opening| drawings::drawings(overview, &lines, &robots, opening)).unzip();
     let quantities: BTreeSet<&str> = own.iter().map(|row| row.quantity.as_str()).collect();
     vec![Section {
-        script: include_str!("section.js"),
+        parts: parts.unwrap_or_default(),
         finding: Some(Finding { rank: 1, body: answer(overview, &accounts) }),
         quantities: quantities.into_iter().map(str::to_owned).collect(),
         terms: TERMS,
-        ..Section::new("derivatives", "Derivatives", body(overview, &own, &accounts, &lines, rows)).with_data(&lines)
+        ..Section::new("derivatives", "Derivatives", body(overview, &own, &accounts, drawn.map(|drawn| (drawn, lines.as_slice())), rows))
     }]
 }
 
@@ -129,10 +134,7 @@ fn missed(overview: &Overview, account: &Account, verdicts: &[Verdict], class: &
     }
 }
 
-fn body(overview: &Overview, own: &[&Row], accounts: &[Account], lines: &[Line], all: &[Row]) -> Markup {
-    let mut robots: Vec<usize> = lines.iter().map(|line| line.robot).collect();
-    robots.dedup();
-    let opening = robots.iter().max_by_key(|&&robot| overview.robots[robot].nv);
+fn body(overview: &Overview, own: &[&Row], accounts: &[Account], differences: Option<(Markup, &[Line])>, all: &[Row]) -> Markup {
     let mut lacking: BTreeMap<&str, BTreeSet<(usize, &str)>> = BTreeMap::new();
     for row in own.iter().filter(|row| row.verdict == Verdict::Skip && row.method == NONE) {
         lacking.entry(&row.engine).or_default().insert(labels::quantity_rank(&row.quantity));
@@ -155,17 +157,9 @@ fn body(overview: &Overview, own: &[&Row], accounts: &[Account], lines: &[Line],
                     }
                 }
             }
-            @if !robots.is_empty() {
+            @if let Some((drawn, lines)) = differences {
                 h3 { "Finite differences: the error against the step" }
-                div.controls {
-                    label { "Robot " select #derivatives-robot {
-                        @for &robot in &robots { option value=(robot) selected[Some(&robot) == opening] { (overview.robots[robot].name) } }
-                    } }
-                }
-                div.pair {
-                    div #derivatives-id.plot role="group" aria-label="Plot of the error of derivatives of inverse dynamics against the step" {}
-                    div #derivatives-fd.plot role="group" aria-label="Plot of the error of derivatives of forward dynamics against the step" {}
-                }
+                (drawn)
                 p.note {
                     "Medians over the states. From the right an error falls with the step, forward differences at first order and centred ones at second; from the left it falls with rounding over the step. "
                     "Level lines: methods that are no differences."

@@ -4,7 +4,6 @@ use super::others::{self, Other};
 use crate::scaling::others::WHAT;
 use featherbench_report::Overview;
 use featherbench_results::{Row, Verdict};
-use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -14,7 +13,7 @@ pub(super) const SCALING: &str = "scaling";
 pub(super) const GROWTH: &str = "growth";
 
 /// Everything.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default)]
 pub(super) struct Data<'a> {
     /// Methods along lines.
     pub(super) series: Vec<Series<'a>>,
@@ -23,21 +22,17 @@ pub(super) struct Data<'a> {
     /// Our methods beside the serial ones that they are compared with.
     pub(super) beside: Vec<Beside<'a>>,
     /// Work and span on several cores.
-    #[serde(skip)]
     pub(super) shares: Vec<Shares<'a>>,
     /// Counts and fill-in of trees.
-    #[serde(skip)]
     pub(super) trees: Vec<Tree<'a>>,
     /// Errors of forward dynamics.
-    #[serde(skip)]
     pub(super) errors: Vec<Error<'a>>,
     /// Factorizations of other engines.
-    #[serde(skip)]
     pub(super) others: Vec<Other<'a>>,
 }
 
 /// A method of an engine along a line.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default)]
 pub(super) struct Series<'a> {
     pub(super) line: &'a str,
     /// Index of the engine.
@@ -59,7 +54,7 @@ pub(super) struct Series<'a> {
 }
 
 /// One size of a series.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default)]
 pub(super) struct Point {
     /// Index of the robot.
     pub(super) robot: usize,
@@ -75,7 +70,7 @@ pub(super) struct Point {
 }
 
 /// Our way by the mass matrix over our articulated-body algorithm, along a line.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default)]
 pub(super) struct Ratios<'a> {
     pub(super) line: &'a str,
     /// (robot, dofs, ratio of counted operations).
@@ -88,7 +83,7 @@ pub(super) struct Ratios<'a> {
 }
 
 /// A method of ours beside the serial one that it is compared with, along a line and on so many threads.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub(super) struct Beside<'a> {
     pub(super) line: &'a str,
     pub(super) quantity: &'a str,

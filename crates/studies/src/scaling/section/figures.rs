@@ -49,6 +49,7 @@ pub(super) fn memory(overview: &Overview, data: &Data) -> Option<Figure> {
             .iter()
             .map(|(&engine, values)| largest(overview.engines[engine], overview.engines[engine].to_owned(), values))
             .collect(),
+        ..Plot::default()
     };
     plot.figure("memory-size", caption)
 }

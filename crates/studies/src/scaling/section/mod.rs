@@ -2,6 +2,7 @@
 
 mod answer;
 mod data;
+mod drawings;
 mod figures;
 mod others;
 mod several;
@@ -27,14 +28,14 @@ pub(crate) fn sections<'a>(run: &'a RunInfo, rows: &'a [Row], overview: &Overvie
         return Vec::new();
     }
     let answer = answer(run, overview, &data);
-    let body = body(overview, &data, &answer);
+    let (drawn, parts) = if data.series.is_empty() { (html! {}, Vec::new()) } else { drawings::drawings(overview, &data) };
+    let body = body(overview, &data, &answer, &drawn);
     let lines = answer.own.iter().map(|own| format!("scaling: {own}")).collect();
     let figures = memory_figure(overview, &data).into_iter().collect();
-    let section = Section::new("scaling", "Scaling", body).with_data(&data);
-    vec![Section { script: include_str!("section.js"), terms: TERMS, lines, figures, ..section }]
+    vec![Section { terms: TERMS, lines, figures, parts, ..Section::new("scaling", "Scaling", body) }]
 }
 
-fn body(overview: &Overview, data: &Data, answer: &Answer) -> Markup {
+fn body(overview: &Overview, data: &Data, answer: &Answer, drawn: &Markup) -> Markup {
     html! {
         section #scaling {
             h2 { "Scaling" }
@@ -50,7 +51,7 @@ fn body(overview: &Overview, data: &Data, answer: &Answer) -> Markup {
                 "How time, memory and error grow with the degrees of freedom, and what the sparsity of trees saves. "
                 "Every engine is measured in a process of its own, with a limit of memory and of time."
             }
-            @if !data.series.is_empty() { (growth(overview, data)) }
+            @if !data.series.is_empty() { (growth(overview, data, drawn)) }
             @if !data.ratios.is_empty() { (crossovers(data)) }
             @if !data.beside.is_empty() || !data.shares.is_empty() { (several::cores(overview, data)) }
             @if !data.errors.is_empty() { (errors(overview, &data.errors)) }
@@ -68,24 +69,9 @@ fn quantities<'a>(data: &Data<'a>) -> Vec<&'a str> {
         .collect()
 }
 
-fn growth(overview: &Overview, data: &Data) -> Markup {
+fn growth(overview: &Overview, data: &Data, drawn: &Markup) -> Markup {
     html! {
-        div.controls {
-            label { "Family " select #scaling-line {
-                @for line in data.lines() { option value=(line) { (line) } }
-            } }
-            label { "Quantity " select #scaling-quantity {
-                @for name in quantities(data) { option value=(name) { (labels::quantity(name)) } }
-            } }
-        }
-        div.pair {
-            div #scaling-time.plot role="group" aria-label="Plot of the time of a call against the degrees of freedom" {}
-            div #scaling-memory.plot role="group" aria-label="Plot of the memory of the process against the degrees of freedom" {}
-        }
-        div.pair {
-            div #scaling-error.plot role="group" aria-label="Plot of the error of forward dynamics against the degrees of freedom" {}
-            div #scaling-ratio.plot role="group" aria-label="Plot of the time of our methods over that of the serial one against the degrees of freedom" {}
-        }
+        (drawn)
         p.note {
             "Time of one call, bars are 95 % intervals of the median. A cross is an estimate. A hollow mark does not count: that engine has no clock, "
             "and its time includes an exchange of messages. Memory is resident, program and libraries included. Error is ‖a − truth‖₂ / ‖truth‖₂. "

@@ -101,6 +101,7 @@ fn against_size(overview: &Overview, times: &Times) -> Option<Figure> {
         x: Axis::log("degrees of freedom nv"),
         y: Axis::log("time per call, ns"),
         series: engines.iter().map(|(&engine, values)| largest(overview.engines[engine], name(engine), values)).collect(),
+        ..Plot::default()
     };
     plot.figure("time-size", caption)
 }
@@ -141,6 +142,7 @@ fn profile(overview: &Overview, times: &Times) -> Option<Figure> {
         x: Axis::log("time over that of the fastest engine"),
         y: Axis::linear("share of problems"),
         series: series.collect(),
+        ..Plot::default()
     };
     plot.figure("speed-profile", caption)
 }
@@ -163,18 +165,20 @@ fn precision(overview: &Overview, points: &[Tradeoff]) -> Option<Figure> {
         overview.robots[robot].name,
         listed(&unbeaten)
     );
-    let mark = |point: &Tradeoff| Point { name: way(point), x: point.ns, y: point.error };
+    let mark = |point: &Tradeoff| Point::new(way(point), point.ns, point.error);
     let series = |(engine, points): (usize, Vec<&Tradeoff>)| Series {
         name: overview.engines[engine].to_owned(),
         style: style(overview.engines[engine]),
         line: Line::Marks,
         points: points.into_iter().map(mark).collect(),
+        ..Series::default()
     };
     let plot = Plot {
         title: format!("Time against error of forward dynamics, {}", overview.robots[robot].name),
         x: Axis::log("time per call, ns"),
         y: Axis::log("median relative error"),
         series: engines.into_iter().map(series).collect(),
+        ..Plot::default()
     };
     plot.figure("work-precision", caption)
 }
@@ -211,6 +215,7 @@ fn share(overview: &Overview, speed: &Speed) -> Option<Figure> {
             .iter()
             .map(|(&engine, values)| largest(overview.engines[engine], overview.engines[engine].to_owned(), values))
             .collect(),
+        ..Plot::default()
     };
     plot.figure("peak-share", caption)
 }

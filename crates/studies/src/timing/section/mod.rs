@@ -1,7 +1,9 @@
 //! The sections of this study: time against size, ratios of times, and time against true error.
 
 mod best;
+mod drawings;
 mod figures;
+mod instructions;
 mod line;
 mod ratios;
 mod speed;
@@ -12,6 +14,7 @@ mod verdict;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
 
+pub use instructions::{InstructionCounts, instructions};
 use ratios::Speed;
 use verdict::SpeedVerdict;
 
@@ -30,24 +33,23 @@ pub(crate) fn sections<'a>(run: &RunInfo, rows: &'a [Row], overview: &Overview<'
     let verdict = SpeedVerdict::of(overview, rows);
     let points = tradeoff::points(overview, rows, &times);
     let (answer, part) = verdict.markup(overview).unzip();
+    let (body, drawn) = time::markup(overview, &times, verdict.first_times(overview));
     let mut sections = vec![Section {
-        script: include_str!("time.js"),
         terms: if times.is_empty() { &[] } else { TERMS },
         lines: line::line(overview, rows, &speed).into_iter().chain(best::lines(&best)).collect(),
         style: include_str!("speed.css"),
         answer,
-        parts: part.into_iter().collect(),
+        parts: part.into_iter().chain(drawn).collect(),
         figures: figures::figures(overview, rows, &verdict, &speed, &points),
-        ..Section::new("time", "Time", time::markup(overview, &times, verdict.first_times(overview))).with_data(&times)
+        ..Section::new("time", "Time", body)
     }];
     if !speed.is_empty() || !best.is_empty() {
-        let body = speed::markup(run, overview, &speed, &best);
-        sections.push(Section { script: include_str!("speed.js"), ..Section::new("speed", "Speed", body).with_data(&speed) });
+        let (body, parts) = speed::markup(run, overview, &speed, &best);
+        sections.push(Section { parts, ..Section::new("speed", "Speed", body) });
     }
     if !points.is_empty() {
-        let body = tradeoff::markup(overview, &points);
-        sections
-            .push(Section { script: include_str!("tradeoff.js"), ..Section::new("tradeoff", "Work–precision", body).with_data(&points) });
+        let (body, parts) = tradeoff::markup(overview, &points);
+        sections.push(Section { parts, ..Section::new("tradeoff", "Work–precision", body) });
     }
     sections
 }

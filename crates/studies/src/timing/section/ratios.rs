@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use featherbench_bench::BATCH;
 use featherbench_report::{Overview, labels};
 use featherbench_results::Row;
-use serde::Serialize;
 
 use super::STUDY;
 
@@ -19,7 +18,7 @@ pub const OPERATIONS: [(&str, &str, f64); 2] = [("id", "RNEA", 142.0), ("fd", "A
 const SINGLE: &str = "f32";
 
 /// The data of the section on speed.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub struct Speed<'a> {
     /// All candidates but the reference, on every robot.
     pub ratios: Vec<Ratio<'a>>,
@@ -28,21 +27,17 @@ pub struct Speed<'a> {
     /// Quantities with ratios, as name and words.
     pub quantities: Vec<[&'a str; 2]>,
     /// Times, and the least time that the machine could need.
-    #[serde(skip)]
     pub limits: Vec<Limit<'a>>,
     /// Why no time is compared with the limit: the peak was measured too low. [`Speed::limits`] is empty then.
-    #[serde(skip)]
     pub no_limits: Option<String>,
     /// The peak performance of the machine.
-    #[serde(skip)]
     pub machine: Option<Machine>,
     /// Why times do not count, and how many rows for each reason.
-    #[serde(skip)]
     pub invalid: BTreeMap<&'a str, usize>,
 }
 
 /// A ratio of times with its interval.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Ratio<'a> {
     /// Index of the robot.
     pub robot: usize,

@@ -2,11 +2,12 @@
 
 use featherbench_bench::BATCH;
 use featherbench_report::numbers::{count, short};
-use featherbench_report::{Overview, labels};
+use featherbench_report::{Overview, Part, labels};
 use featherbench_results::RunInfo;
 use maud::{Markup, html};
 
 use super::best::{self, Best};
+use super::drawings;
 use super::ratios::{OPERATIONS, Ratio, Speed};
 
 /// The input of each quantity's time, and the work inside the clock.
@@ -34,9 +35,10 @@ const INCLUDED: [(&str, &str, &str); 10] = [
 /// The number of reasons, why times do not count, that the page lists.
 const REASONS: usize = 12;
 
-/// Writes the section.
-pub fn markup(run: &RunInfo, overview: &Overview, speed: &Speed, best: &[Best]) -> Markup {
-    html! {
+/// Writes the section, and the drawings that it does not show at first.
+pub fn markup(run: &RunInfo, overview: &Overview, speed: &Speed, best: &[Best]) -> (Markup, Vec<Part>) {
+    let (drawn, parts) = drawings::ratios(overview, speed);
+    let body = html! {
         section #speed {
             h2 { "Speed, side by side" }
             p.lead {
@@ -45,13 +47,7 @@ pub fn markup(run: &RunInfo, overview: &Overview, speed: &Speed, best: &[Best]) 
             }
             (missing(run))
             @if !speed.ratios.is_empty() {
-                div.controls {
-                    label { "Compute " select #speed-quantity {
-                        @for (index, [_, title]) in speed.quantities.iter().enumerate() { option value=(index) { (title) } }
-                    } }
-                    label { "Inputs " select #speed-case { option value="stream" { "stream: another state each call" } option value="hot" { "hot: one state again and again" } } }
-                }
-                div #speed-plot.plot role="group" aria-label="Plot of ratios of times" {}
+                (drawn)
                 p.note { "Grey: ± 2 %, within which this experiment calls nothing a difference. Hollow marks do not count: see below." }
                 (estimates(overview, speed))
                 (batches(speed))
@@ -65,7 +61,8 @@ pub fn markup(run: &RunInfo, overview: &Overview, speed: &Speed, best: &[Best]) 
             (controls(overview, speed))
             (included(speed))
         }
-    }
+    };
+    (body, parts)
 }
 
 /// Native oracles that should have been timed and are missing.

@@ -1,18 +1,18 @@
-//! Section: time against size. The script draws it; its frame, choices and table are made here.
+//! Section: time against size. Its drawings are in `drawings`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use featherbench_report::fit::{Fit, power_law};
 use featherbench_report::numbers::short;
-use featherbench_report::{Overview, labels};
+use featherbench_report::{Overview, Part, labels};
 use featherbench_results::Row;
 use maud::{Markup, html};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
-use super::STUDY;
+use super::{STUDY, drawings};
 
 /// Times of one algorithm on one family.
-#[derive(Debug, Serialize)]
+#[derive(Debug)]
 pub struct TimeLine<'a> {
     /// Index of the engine.
     pub engine: usize,
@@ -35,7 +35,7 @@ pub struct TimeLine<'a> {
 }
 
 /// The time of one robot.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug)]
 pub struct TimePoint {
     /// Index of the robot.
     pub robot: usize,
@@ -91,37 +91,22 @@ pub fn lines<'a>(overview: &Overview<'a>, rows: &'a [Row]) -> Vec<TimeLine<'a>> 
         .collect()
 }
 
-/// Writes the section; `first` tells the times of one robot before anything else.
-pub fn markup(overview: &Overview, times: &[TimeLine], first: Option<Markup>) -> Markup {
+/// Writes the section, and the drawings that it does not show at first; `first` tells the times of one robot before anything else.
+pub fn markup(overview: &Overview, times: &[TimeLine], first: Option<Markup>) -> (Markup, Vec<Part>) {
     let families: BTreeSet<&str> = times.iter().map(|line| line.family).collect();
     // All families at once are hard to read: the plot first shows the one with the most points.
     let points = |family: &&&str| times.iter().filter(|line| line.family == **family).map(|line| line.points.len()).sum::<usize>();
-    let opening = families.iter().max_by_key(points).copied();
-    let cases: BTreeSet<&str> = times.iter().map(|line| line.cache).collect();
-    html! {
+    let opening = families.iter().max_by_key(points).copied().unwrap_or_default();
+    let (drawn, parts) = drawings::times(overview, times, opening);
+    let body = html! {
         section #time {
             h2 { "Time against size" }
             @if let Some(first) = first { (first) }
-            p.lead { "Time of one call on one pinned core, against the degrees of freedom. Bars are 95 % intervals of the median, hollow marks times that do not count, crosses estimates." }
+            p.lead { "Time of one call on one pinned core, against the degrees of freedom. Bars are 95 % intervals of the median, hollow marks times that do not count, crosses estimates, broad lines fits." }
             @if times.is_empty() {
                 p.empty { "This run holds no times." }
             } @else {
-                div.controls {
-                    label { "Show " select #time-unit {
-                        option value="call" { "ns per call" }
-                        option value="joint" { "ns per joint" }
-                    } }
-                    label { "Inputs " select #time-case {
-                        // `stream` first, as it is more realistic: every call reads another state.
-                        @for case in cases.iter().rev() { option value=(case) { (case_words(case)) } }
-                    } }
-                    label { "Family " select #time-family {
-                        option value="" { "all" }
-                        @for family in &families { option value=(family) selected[Some(*family) == opening] { (family) } }
-                    } }
-                    label.check { input #time-fit type="checkbox" checked; " fitted lines" }
-                }
-                div #time-plot.plot role="group" aria-label="Plot of time against size" {}
+                (drawn)
                 details {
                     summary { "Growth: fitted exponents" }
                     p.note { "Time ∝ nvᵖ by least squares on logarithms, with the standard error of p. Small robots, where fixed costs rule, flatten a fit over all sizes." }
@@ -129,10 +114,12 @@ pub fn markup(overview: &Overview, times: &[TimeLine], first: Option<Markup>) ->
                 }
             }
         }
-    }
+    };
+    (body, parts)
 }
 
-fn case_words(case: &str) -> String {
+/// What the inputs of a time are.
+pub fn case_words(case: &str) -> String {
     match case {
         "stream" => "stream: another state each call".into(),
         "hot" => "hot: one state again and again".into(),

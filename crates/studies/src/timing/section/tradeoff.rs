@@ -1,11 +1,11 @@
 //! Section: time against true error of forward dynamics: the cost of a digit.
 
-use featherbench_report::Overview;
 use featherbench_report::numbers::{scientific, short};
+use featherbench_report::{Overview, Part};
 use featherbench_results::Row;
 use maud::{Markup, html};
-use serde::Serialize;
 
+use super::drawings;
 use super::time::TimeLine;
 use crate::accuracy;
 
@@ -15,7 +15,7 @@ const QUANTITY: &str = "fd";
 const INPUTS: &str = "stream";
 
 /// One method on one robot.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Tradeoff<'a> {
     /// Index of the robot.
     pub robot: usize,
@@ -95,22 +95,17 @@ pub fn richest(overview: &Overview, points: &[Tradeoff]) -> Option<usize> {
     robots(points).into_iter().max_by_key(|&(robot, methods)| (methods, overview.robots[robot].nv)).map(|(robot, _)| robot)
 }
 
-/// Writes the section.
-pub fn markup(overview: &Overview, points: &[Tradeoff]) -> Markup {
-    let (robots, opening) = (robots(points), richest(overview, points));
-    html! {
+/// Writes the section, and the drawings that it does not show at first.
+pub fn markup(overview: &Overview, points: &[Tradeoff]) -> (Markup, Vec<Part>) {
+    let (drawn, parts) = drawings::tradeoffs(overview, points, &robots(points), richest(overview, points));
+    let body = html! {
         section #tradeoff {
             h2 { "Work–precision" }
             p.lead {
                 "What a digit costs: time of one forward dynamics against its true error. Below and to the left is better; the line joins the methods that nothing beats in both. "
                 "Only methods whose time was measured are here."
             }
-            div.controls {
-                label { "Robot " select #tradeoff-robot {
-                    @for &(robot, _) in &robots { option value=(robot) selected[Some(robot) == opening] { (overview.robots[robot].name) } }
-                } }
-            }
-            div #tradeoff-plot.plot role="group" aria-label="Plot of true error against time" {}
+            (drawn)
             details {
                 summary { "As a table" }
                 div.scroll.tall {
@@ -137,5 +132,6 @@ pub fn markup(overview: &Overview, points: &[Tradeoff]) -> Markup {
                 }
             }
         }
-    }
+    };
+    (body, parts)
 }
