@@ -13,14 +13,17 @@ use std::process::{Command, Stdio};
 /// Programs that print a page as PDF, in the order in which they are tried.
 const BROWSERS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
 
-/// Writes the figures into a folder, and says which are absent and why.
-pub fn write(folder: &Path, info: &RunInfo, sections: &[Section]) -> Result<(), Fail> {
-    let figures: Vec<&Figure> = sections.iter().flat_map(|section| &section.figures).collect();
-    let absent: Vec<String> = FIGURES
+/// Writes the figures into a folder, and says which are absent and why. `counted` are those of instruction counts, if counts were given.
+pub fn write(folder: &Path, info: &RunInfo, sections: &[Section], counted: Option<Vec<Figure>>) -> Result<(), Fail> {
+    let figures: Vec<&Figure> = sections.iter().flat_map(|section| &section.figures).chain(counted.iter().flatten()).collect();
+    let mut absent: Vec<String> = FIGURES
         .iter()
         .filter(|(name, _)| figures.iter().all(|figure| figure.name != *name))
         .map(|(name, needs)| format!("absent: {name}, which needs {needs}"))
         .collect();
+    if counted.as_ref().is_some_and(Vec::is_empty) {
+        absent.push("absent: instructions, whose robots this run does not have".into());
+    }
     if figures.is_empty() {
         return Err(Fail::input(format!("--figures: run {} has no rows for any figure\n  {}", info.run, absent.join("\n  "))));
     }

@@ -2,11 +2,12 @@
 
 use crate::args::HistoryArgs;
 use crate::fail::Fail;
+use crate::instructions;
 use crate::root::Root;
 use crate::say::say;
 use ::featherbench_results::{CSV_NAME, Host, RUN_NAME, Row, RunInfo, atomic_write, read_run};
 use featherbench_report::runs::{self, Past};
-use std::collections::BTreeMap;
+use featherbench_studies::InstructionCounts;
 use std::path::Path;
 
 /// The header of a history file.
@@ -41,8 +42,8 @@ pub fn history(root: &dyn Fn() -> Result<Root, Fail>, args: &HistoryArgs) -> Res
 /// `reports/history` of the project. Only then the project must be found.
 fn append(root: &dyn Fn() -> Result<Root, Fail>, args: &HistoryArgs) -> Result<(), Fail> {
     let (run, records) = read_run(&args.folder)?;
-    let instructions = args.instructions.as_deref().map(read_instructions).transpose()?.unwrap_or_default();
-    let (lines, invalid) = lines(&run, &records, &args.model, &instructions);
+    let counts = args.instructions.as_deref().map(instructions::read).transpose()?.unwrap_or_default();
+    let (lines, invalid) = lines(&run, &records, &args.model, &counts);
     if lines.is_empty() {
         let message = format!("{} holds no valid times of own kernels on '{}' ({invalid} do not count)", args.folder.display(), args.model);
         return Err(Fail::input(message));
@@ -72,7 +73,7 @@ fn machine(host: &Host) -> String {
 }
 
 /// One line per kernel over the stream, and how many times do not count.
-fn lines(run: &RunInfo, records: &[Row], model: &str, instructions: &BTreeMap<(String, String), String>) -> (Vec<String>, usize) {
+fn lines(run: &RunInfo, records: &[Row], model: &str, counts: &InstructionCounts) -> (Vec<String>, usize) {
     let featherbench = |row: &&Row| row.study == "timing" && row.engine == "featherbench" && row.cache == "stream" && row.robot == model;
     let rows: Vec<&Row> = records.iter().filter(featherbench).collect();
     let (mut lines, mut invalid) = (Vec::new(), 0);
@@ -84,7 +85,7 @@ fn lines(run: &RunInfo, records: &[Row], model: &str, instructions: &BTreeMap<(S
         }
         let (low, high) = (row.ci_low.unwrap_or(ns), row.ci_high.unwrap_or(ns));
         let kernel = format!("{}/{}", row.quantity, row.method);
-        let count = instructions.get(&(kernel.clone(), model.to_owned())).map_or("", String::as_str);
+        let count = counts.get(&(kernel.clone(), model.to_owned())).map_or_else(String::new, u64::to_string);
         let date: String = run.started.chars().take(10).collect();
         let revision: String = run.git.revision.chars().take(10).collect();
         lines.push(format!("{date},{revision},{kernel},{model},{ns:.1},{low:.1},{high:.1},{count}"));
@@ -109,23 +110,6 @@ fn merged(before: &str, lines: &[String]) -> Result<String, String> {
         kept.retain(|line| !line.starts_with(&oldest));
     }
     Ok(format!("{HEADER}\n{}\n", kept.join("\n")))
-}
-
-/// Counts of `ci/instructions.py --out`, by kernel and model.
-fn read_instructions(path: &Path) -> Result<BTreeMap<(String, String), String>, Fail> {
-    let text = std::fs::read_to_string(path).map_err(|error| failed(path, &error))?;
-    let mut counts = BTreeMap::new();
-    for (number, line) in text.lines().enumerate().skip(1) {
-        let mut fields = line.rsplitn(4, ',');
-        let (Some(count), Some(model), Some(kernel)) = (fields.next(), fields.next(), fields.next()) else {
-            return Err(failed(path, &format!("line {} is not rustc,kernel,model,instructions", number + 1)));
-        };
-        if count.parse::<u64>().is_err() {
-            return Err(failed(path, &format!("line {}: '{count}' is no count of instructions", number + 1)));
-        }
-        counts.insert((kernel.to_owned(), model.to_owned()), count.to_owned());
-    }
-    Ok(counts)
 }
 
 fn failed(path: &Path, what: &dyn std::fmt::Display) -> Fail {

@@ -55,6 +55,7 @@ mod generate;
 mod history;
 mod hyperqueue;
 mod identify;
+mod instructions;
 mod list;
 mod merge;
 mod native;

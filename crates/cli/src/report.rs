@@ -4,6 +4,7 @@ use crate::args::ReportArgs;
 use crate::fail::Fail;
 use crate::figures;
 use crate::gate;
+use crate::instructions;
 use crate::say::say;
 use ::featherbench_results::{Row, RunInfo};
 use featherbench_report::{Findings, Section};
@@ -15,7 +16,9 @@ pub fn write(args: &ReportArgs) -> Result<(), Fail> {
     let (info, records) = ::featherbench_results::read_run(&args.folder)?;
     let page = render(&args.folder, &info, &records)?;
     if let Some(folder) = &args.figures {
-        figures::write(folder, &info, &sections(&args.folder, &info, &records)?)?;
+        let counts = args.instructions.as_deref().map(instructions::read).transpose()?;
+        let counted = counts.map(|counts| featherbench_studies::instructions(&info, &records, &counts));
+        figures::write(folder, &info, &sections(&args.folder, &info, &records)?, counted)?;
     }
     say!("report: {}", page.display());
     show(&page, args.open)

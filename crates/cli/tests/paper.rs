@@ -72,6 +72,28 @@ fn a_run_gives_figures_data_captions_and_references() {
     assert!(text("references.bib").starts_with("@misc{featherbench,"));
 }
 
+/// Counts are drawn for the robots that the run has, and beside its times.
+#[test]
+fn instruction_counts_are_drawn_over_the_robots_of_a_run() {
+    let sandbox = Sandbox::new();
+    featherbench_results::write_run(&sandbox.path("run"), &RunInfo { run: "r".into(), ..RunInfo::default() }, &rows()).unwrap();
+    let counts = "rustc,kernel,model,instructions\n1.95.0,fd/aba,arm,2000\n1.95.0,fd/aba,long,20000\n1.95.0,fd/aba,unknown,7\n";
+    fs::write(sandbox.path("counts.csv"), counts).unwrap();
+    sandbox
+        .run(&["report", "run", "--figures", "paper", "--instructions", "counts.csv"])
+        .expect(0, &["instructions-dynamics, instructions-time"]);
+    let text = |name: &str| fs::read_to_string(sandbox.path("paper").join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+    assert!(text("instructions-dynamics.csv").ends_with("forward dynamics aba,arm,7,2000\nforward dynamics aba,long,70,20000\n"));
+    // 2000 over 500 ns and 20 000 over 5000 ns.
+    assert!(text("captions.md").contains("2 kernels of ours") && text("captions.md").contains("4 to 4 instructions per nanosecond"));
+    fs::write(sandbox.path("counts.csv"), "rustc,kernel,model,instructions\n1.95.0,fd/aba,arm,many\n").unwrap();
+    sandbox
+        .run(&["report", "run", "--figures", "paper", "--instructions", "counts.csv"])
+        .expect(2, &["counts.csv: line 2: 'many' is no count"]);
+    fs::write(sandbox.path("counts.csv"), "rustc,kernel,model,instructions\n").unwrap();
+    sandbox.run(&["report", "run", "--figures", "paper", "--instructions", "counts.csv"]).expect(0, &["absent: instructions"]);
+}
+
 #[test]
 fn a_run_without_rows_for_a_figure_is_told() {
     let sandbox = Sandbox::new();

@@ -17,6 +17,9 @@ pub struct ReportArgs {
     /// Write the run's figures for a paper into this folder: each as SVG, CSV and, with Chromium, PDF; captions.md and references.bib.
     #[arg(long, value_name = "DIR")]
     pub figures: Option<PathBuf>,
+    /// Draw these instruction counts too, over the run's robots and beside its times; `ci/instructions.py --out` writes them.
+    #[arg(long, value_name = "FILE", requires = "figures")]
+    pub instructions: Option<PathBuf>,
     /// Open the page.
     #[arg(long)]
     pub open: bool,
