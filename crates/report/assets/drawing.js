@@ -273,11 +273,29 @@
     for (const place of root.querySelectorAll("[data-choice]:not([hidden]) > [data-part]")) bring(place);
   }
 
+  // A finding leads to the drawing that shows it. Its choice is made when the list is there.
+  const wanted = new Map();
+
+  function take(list) {
+    if (!list || !wanted.has(list.id)) return;
+    list.value = wanted.get(list.id);
+    wanted.delete(list.id);
+    list.dispatchEvent(new Event("change", { bubbles: true }));
+  }
+
+  document.addEventListener("click", (event) => {
+    const { list, value } = event.target.closest?.("a.figure[data-list]")?.dataset ?? {};
+    if (!list) return;
+    wanted.set(list, value);
+    take(byId(list));
+  });
+
   dressed((root) => {
     const find = (selector) => [...root.querySelectorAll(selector), ...(root.matches?.(selector) ? [root] : [])];
     for (const chosen of find("[data-lists]")) {
       for (const id of chosen.dataset.lists.split(" ")) byId(id).addEventListener("change", () => choose(chosen));
       choose(chosen);
+      for (const id of chosen.dataset.lists.split(" ")) take(byId(id));
     }
     const around = root.parentElement?.closest("[data-lists]");
     if (around) choose(around);

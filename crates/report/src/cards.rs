@@ -42,6 +42,7 @@ fn item(drawings: &Drawings, found: &Found, drawing: &Markup) -> Markup {
                 " on " @if !worst.robot.is_empty() { (blocks::robot(overview, &worst.robot)) ", " }
                 (opener(&overview.chunk_of(worst), &here, &if found.case().is_empty() { worst.study.clone() } else { found.case() }))
                 "; " (opener(UNPASSED, if found.quantities.len() == 1 { &here[..] } else { &all[..] }, &found.extent())) "."
+                (drawings.figure(worst))
                 @if !found.cause.is_empty() { " " span.cause { @if !found.new { "Known: " } (found.cause) } }
             } @else {
                 @if !found.place().is_empty() { " (" (place(overview, found)) ")" }

@@ -9,7 +9,7 @@ use maud::{Markup, html};
 use crate::numbers::grouped;
 use crate::overview::Overview;
 use crate::robot::drawn;
-use crate::section::Section;
+use crate::section::{Section, Shown};
 
 /// The drawings of a run.
 pub struct Drawings<'a> {
@@ -20,6 +20,8 @@ pub struct Drawings<'a> {
     marks: BTreeMap<(&'a str, &'a str), BTreeSet<String>>,
     /// The robots that a finding may be about.
     found: BTreeSet<&'a str>,
+    /// The sections, whose drawings show rows.
+    sections: &'a [Section],
 }
 
 /// A drawing that a card brings. Its page is the robot's.
@@ -45,7 +47,7 @@ impl<'a> Drawings<'a> {
         }
         let unmet = run.expected.iter().filter(|condition| !condition.is_met()).map(|condition| condition.culprit.robot.as_str());
         let found = unpassed().map(|row| row.robot.as_str()).chain(unmet).collect();
-        Self { run, overview, marks, found }
+        Self { run, overview, marks, found, sections }
     }
 
     /// The drawing on a robot's own page, or why there is none.
@@ -62,6 +64,20 @@ impl<'a> Drawings<'a> {
                     "It is not drawn. A run draws robots of at most " (Drawing::MOST_BODIES) " bodies, those of its findings first, until the drawings have "
                     (grouped(Drawing::MOST_BYTES)) " bytes."
                 }
+            }
+        }
+    }
+
+    /// The way from a row to the drawing that shows its kind, with its choice, or else to the section of its study.
+    pub fn figure(&self, row: &Row) -> Markup {
+        let of_study = || self.sections.iter().filter(|section| section.study == row.study && !section.appendix);
+        let shows = |shown: &&Shown| shown.quantity == row.quantity && shown.metric.as_ref().is_none_or(|metric| *metric == row.metric);
+        let shown = of_study().find_map(|section| Some((section.anchor, &section.shows.iter().find(shows)?.choice)));
+        html! {
+            @if let Some((anchor, (list, value))) = shown {
+                " " a.figure href={ "#" (anchor) } data-list=(list) data-value=(value) { "Its figure" } "."
+            } @else if let Some(section) = of_study().next() {
+                " " a.figure href={ "#" (section.anchor) } { "Its section" } "."
             }
         }
     }

@@ -57,7 +57,7 @@ pub use chunks::{TIMES, UNPASSED};
 pub use error::ReportError;
 pub use findings::{Findings, Found, Status};
 pub use overview::{EVERYONE, Overview, Pages, Robot, robot_chunk};
-pub use section::{Finding, Mark, Part, Section};
+pub use section::{Finding, Mark, Part, Section, Shown};
 pub use summary::summary;
 pub use tally::{Tally, worst_first};
 pub use write::{ReportPaths, write};

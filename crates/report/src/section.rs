@@ -41,6 +41,8 @@ pub struct Section {
     pub marks: Vec<Mark>,
     /// Its figures for papers.
     pub figures: Vec<Figure>,
+    /// The rows that its drawings show: a finding among them leads there.
+    pub shows: Vec<Shown>,
     /// Quantities of whose errors it tells: the section on the method defines their measures.
     pub quantities: Vec<String>,
     /// Terms and their definitions, for the section on the method.
@@ -68,6 +70,17 @@ impl Part {
     pub fn place(&self) -> Markup {
         html! { div data-part=(self.name) { a href={ "sections/" (self.name) ".html" } { (self.title) " on a page of its own" } } }
     }
+}
+
+/// Rows of the section's study that one of its drawings shows, and the choice that brings the drawing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// The quantity of the rows.
+    pub quantity: String,
+    /// Their metric; `None` stands for every one.
+    pub metric: Option<String>,
+    /// The `id` of the list of [`choices`](crate::choices), and the value to be chosen.
+    pub choice: (&'static str, String),
 }
 
 /// A body of a robot in which an engine differs, for drawings.
@@ -106,6 +119,7 @@ impl Section {
             parts: Vec::new(),
             marks: Vec::new(),
             figures: Vec::new(),
+            shows: Vec::new(),
             quantities: Vec::new(),
             terms: &[],
             lines: Vec::new(),

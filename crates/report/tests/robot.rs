@@ -1,7 +1,7 @@
 //! The picture of a robot: it stands without a script, and marks the bodies that differ.
 
 use featherbench_report::robot::drawn;
-use featherbench_report::{Mark, Section};
+use featherbench_report::{Mark, Section, Shown};
 use featherbench_results::{Culprit, Drawing, DrawnBody, Expectation, GateKind, ModelOrigin, Relation, RobotInfo, Row, RunInfo, Verdict};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -123,6 +123,26 @@ fn a_card_brings_the_drawing_of_its_robot_with_the_bodies_of_its_engine() {
     let brought = std::fs::read_dir(written.folder.path().join("sections")).unwrap();
     let names = brought.map(|entry| entry.unwrap().file_name().into_string().unwrap());
     assert_eq!(names.filter(|name| name.starts_with("drawing-")).count(), 3, "crane without a mark, and for two engines");
+}
+
+#[test]
+fn a_card_leads_to_the_drawing_that_shows_its_rows_or_to_the_section_of_its_study() {
+    let (run, rows, section) = yard();
+    let page = |shows: Vec<Shown>, study: &'static str| {
+        let body = maud::html! { section #mine { h2 { "Mine" } } };
+        Written::of(&run, &rows, &[Section { shows, study, ..Section::new("mine", "Mine", body) }]).index
+    };
+    assert_eq!(section.study, "");
+    let shown = |quantity: &str, metric: Option<&str>| Shown {
+        quantity: quantity.into(),
+        metric: metric.map(str::to_owned),
+        choice: ("my-list", "7".into()),
+    };
+    let figure = "<a class=\"figure\" href=\"#mine\" data-list=\"my-list\" data-value=\"7\">Its figure</a>";
+    assert_eq!(page(vec![shown("id", None)], "s").matches(figure).count(), 1, "the finding on inverse dynamics alone");
+    let other = page(vec![shown("id", Some("another"))], "s");
+    assert!(!other.contains("Its figure") && other.contains("<a class=\"figure\" href=\"#mine\">Its section</a>"), "{other}");
+    assert!(!page(vec![shown("id", None)], "other").contains("class=\"figure\" href"), "a section of another study shows none of it");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use featherbench_report::choices::{Choices, List};
 use featherbench_report::figure::{Axis as Paper, Point, Rows, Series, Style};
 use featherbench_report::numbers::short;
-use featherbench_report::{Overview, Part, labels, robot_chunk};
+use featherbench_report::{Overview, Part, Shown, labels, robot_chunk};
 use maud::{Markup, html};
 
 use super::STUDY;
@@ -61,6 +61,13 @@ pub(super) fn drawings(overview: &Overview, accuracy: &Accuracy) -> (Markup, Vec
     ];
     let opening = drawings.first().map(|(values, _): &(Vec<String>, Markup)| values.clone()).unwrap_or_default();
     Choices { name: "accuracy-choices", title: "Accuracy", lists, opening, drawings }.made()
+}
+
+/// The rows that the drawings show: those of quantities with a curve.
+pub(super) fn shown(accuracy: &Accuracy) -> Vec<Shown> {
+    let has_curve = |quantity: &&str| accuracy.curves.iter().any(|curve| accuracy.answers[curve.answer].quantity == *quantity);
+    let of = |quantity: &str| Shown { quantity: quantity.to_owned(), metric: None, choice: ("accuracy-quantity", quantity.to_owned()) };
+    accuracy.quantities().into_iter().filter(has_curve).map(of).collect()
 }
 
 fn drawn(overview: &Overview, accuracy: &Accuracy, curves: &[&Curve], quantity: &str, axis: Axis, family: &str) -> Markup {

@@ -47,6 +47,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
         quantities: accuracy.quantities().into_iter().map(str::to_owned).collect(),
         terms: TERMS,
         figures: figures::figures(overview, rows),
+        shows: drawings::shown(&accuracy),
         ..Section::new("accuracy", "Accuracy", body(overview, &accuracy, &drawn)).with_data(&accuracy)
     }]
 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use featherbench_report::choices::{Choices, List};
 use featherbench_report::figure::{Axis, Point, Rows, Series, Style};
 use featherbench_report::numbers::smaller;
-use featherbench_report::{Overview, Part, labels, robot_chunk};
+use featherbench_report::{Overview, Part, Shown, labels, robot_chunk};
 use featherbench_results::Row;
 use maud::{Markup, html};
 
@@ -89,6 +89,16 @@ pub fn markup(overview: &Overview, plots: &[ErrorPlot]) -> (Markup, Vec<Part>) {
         }
     };
     (body, parts)
+}
+
+/// The rows that the drawings show.
+pub fn shown(plots: &[ErrorPlot]) -> Vec<Shown> {
+    let of = |(index, plot): (usize, &ErrorPlot)| Shown {
+        quantity: plot.quantity.to_owned(),
+        metric: Some(plot.metric.to_owned()),
+        choice: ("depth-quantity", index.to_string()),
+    };
+    plots.iter().enumerate().map(of).collect()
 }
 
 /// The families that have an error.

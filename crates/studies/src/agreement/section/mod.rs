@@ -36,7 +36,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
             quantities: cells.quantities.iter().map(|&name| name.to_owned()).collect(),
             ..Section::new("agreement", "Agreement", body).with_data(&cells.data())
         },
-        Section { parts: drawn, script: include_str!("depth.js"), ..Section::new("depth", "Error", depth) },
+        Section { parts: drawn, shows: depth::shown(&plots), script: include_str!("depth.js"), ..Section::new("depth", "Error", depth) },
         Section { style: include_str!("pairs.css"), ..Section::new("pairs", "Pairs", pairs::markup(overview, rows)) },
     ];
     if !matrix.rows.is_empty() {
