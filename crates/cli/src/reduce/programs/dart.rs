@@ -114,7 +114,8 @@ fn logarithm(q: &[f64]) -> [f64; 3] {
     [q[0] * factor, q[1] * factor, q[2] * factor]
 }
 
-fn body(body: &BodyDescription) -> Option<String> {
+fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
+    let body = bodies.get(at)?;
     let place = &body.joint.placement;
     let held = format!("{}, {}, {}", number(body.mass), list(&body.com), rows(&super::full(body.inertia)));
     let add = |kind: &str, more: &str| {

@@ -98,7 +98,8 @@ fn theirs(robot: &Robot) -> Option<Theirs> {
     Theirs::of(robot, Convention::Drake)
 }
 
-fn body(body: &BodyDescription) -> Option<String> {
+fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
+    let body = bodies.get(at)?;
     let joints = match body.joint.kind {
         JointType::Fixed => return None,
         JointType::Revolute { axis } => format!("turn({})", list(&axis)),

@@ -11,7 +11,7 @@ from featherbench import Robot
 
 robot = Robot.from_json(Path(__file__).with_name(\"robot.json\"))
 ",
-    body: |_| Some(String::new()),
+    body: |_, _| Some(String::new()),
     end: "",
     armature: "",
     answers: &[

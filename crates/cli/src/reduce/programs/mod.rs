@@ -23,8 +23,8 @@ use theirs::Theirs;
 struct Interface {
     /// The imports, and an empty robot; `{gravity}` is replaced.
     begin: &'static str,
-    /// A body with its joint; `None` if the engine lacks the joint.
-    body: fn(&BodyDescription) -> Option<String>,
+    /// The body of an index with its joint; `None` if the engine lacks the joint.
+    body: fn(&[BodyDescription], usize) -> Option<String>,
     /// What follows the last body; `{armature}` is replaced.
     end: &'static str,
     /// What sets armature, with all dofs' in the place of `{armature}`; empty if a body has its own.
@@ -58,8 +58,8 @@ pub fn of(engine: &str, version: &str, finding: &Finding, robot: &Robot) -> Opti
         measure.told
     );
     text += &interface.begin.replace("{gravity}", &list(&robot.description.gravity));
-    for body in &robot.description.bodies {
-        text += &(interface.body)(body)?;
+    for at in 0..bodies {
+        text += &(interface.body)(&robot.description.bodies, at)?;
     }
     text += &interface.end.replace("{armature}", &armature(interface, robot));
     let states = &robot.states;

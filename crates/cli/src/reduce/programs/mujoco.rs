@@ -1,9 +1,11 @@
-//! Programs in MuJoCo's Python interface. A joint of several degrees of freedom is slides and hinges in one body, as our oracle builds it.
+//! Programs in MuJoCo's Python interface. A joint of several degrees of freedom is slides and hinges in one body, and so is a massless body that is
+//! only a joint before its child, as our oracle builds them.
 
 use super::{Interface, Theirs, list, number, rows};
 use featherbench_bench::Robot;
 use featherbench_library::Convention;
-use featherbench_model::{BodyDescription, JointType};
+use featherbench_model::{BodyDescription, JointType, Placement};
+use featherbench_spatial::{Mat3, Vec3};
 
 pub const MUJOCO: Interface = Interface {
     begin: "import mujoco
@@ -40,8 +42,8 @@ def principal(inertia):
 def add(parent, joints, name, rotation, translation, mass, com, inertia):
     \"\"\"Add a body with its joints.\"\"\"
     body = bodies[parent].add_body(name=name, pos=translation, quat=quaternion(rotation))
-    for kind, axis in joints:
-        body.add_joint(type=kind, axis=axis)
+    for kind, axis, place in joints:
+        body.add_joint(type=kind, axis=axis, pos=place)
     moments, turn = principal(inertia)
     body.explicitinertial, body.mass, body.ipos, body.inertia, body.iquat = True, mass, com, moments, turn
     bodies.append(body)
@@ -97,33 +99,65 @@ fn theirs(robot: &Robot) -> Option<Theirs> {
     Theirs::of(robot, Convention::MuJoCo)
 }
 
-fn body(body: &BodyDescription) -> Option<String> {
-    let joints = match body.joint.kind {
-        JointType::Fixed | JointType::Helical { .. } => return None,
-        JointType::Free if body.parent.is_some() || body.joint.armature.iter().any(|armature| *armature != 0.0) => return None,
-        JointType::Revolute { axis } => format!("(HINGE, {})", list(&axis)),
-        JointType::Prismatic { axis } => format!("(SLIDE, {})", list(&axis)),
-        JointType::Cylindrical { axis } => format!("(HINGE, {0}), (SLIDE, {0})", list(&axis)),
-        JointType::Spherical => "(BALL, Z)".into(),
-        JointType::Free => "(FREE, Z)".into(),
-        JointType::Planar => "(SLIDE, X), (SLIDE, Y), (HINGE, Z)".into(),
-        JointType::Universal => "(HINGE, X), (HINGE, Y)".into(),
-        JointType::Translation => "(SLIDE, X), (SLIDE, Y), (SLIDE, Z)".into(),
-        JointType::EulerZyx => "(HINGE, Z), (HINGE, Y), (HINGE, X)".into(),
-    };
+fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
+    if folds(bodies, at) {
+        return Some("bodies.append(None)\n".into());
+    }
+    // The massless bodies before it are joints of this one.
+    let first = (0..at).rev().take_while(|&before| folds(bodies, before)).last().unwrap_or(at);
+    let (chain, body) = (bodies.get(first..=at)?, bodies.get(at)?);
     // Its compiler refuses a moving body without mass.
     if body.mass == 0.0 {
         return None;
     }
-    let place = &body.joint.placement;
+    let joints: Option<Vec<String>> = chain.iter().enumerate().map(|(k, part)| joints(part, chain.get(k + 1..)?)).collect();
+    let place = chain.first()?.joint.placement;
+    let way = Mat3::from_array(place.rotation) * Vec3::from_array(way(chain.get(1..)?));
+    let position = (Vec3::from_array(place.translation) + way).to_array();
     Some(format!(
-        "add({}, [{joints}], {:?}, {}, {}, {}, {}, {})\n",
-        super::parent(body),
+        "add({}, [{}], {:?}, {}, {}, {}, {}, {})\n",
+        super::parent(chain.first()?),
+        joints?.join(", "),
         body.name,
         rows(&place.rotation),
-        list(&place.translation),
+        list(&position),
         number(body.mass),
         list(&body.com),
         rows(&super::full(body.inertia))
     ))
+}
+
+/// Whether a body is only a joint before its one child, with the same axes.
+fn folds(bodies: &[BodyDescription], at: usize) -> bool {
+    let (Some(body), Some(child)) = (bodies.get(at), bodies.get(at + 1)) else { return false };
+    let nothing = body.mass == 0.0 && body.com.iter().chain(&body.inertia).all(|number| *number == 0.0);
+    let only = child.parent == Some(at) && bodies.iter().filter(|other| other.parent == Some(at)).count() == 1;
+    let floats = [body, child].iter().any(|body| body.joint.kind == JointType::Free);
+    nothing && only && !floats && child.joint.placement.rotation == Placement::default().rotation
+}
+
+/// The sum of the translations of some joints, which have the same axes.
+fn way(bodies: &[BodyDescription]) -> [f64; 3] {
+    bodies.iter().fold([0.0; 3], |sum, body| std::array::from_fn(|k| sum[k] + body.joint.placement.translation[k]))
+}
+
+/// The joints of a body, at their place in the last body of the chain; the others follow it there.
+fn joints(body: &BodyDescription, others: &[BodyDescription]) -> Option<String> {
+    let z = "Z".to_owned();
+    let parts = match body.joint.kind {
+        JointType::Fixed | JointType::Helical { .. } => return None,
+        JointType::Free if body.parent.is_some() || body.joint.armature.iter().any(|armature| *armature != 0.0) => return None,
+        JointType::Revolute { axis } => vec![("HINGE", list(&axis))],
+        JointType::Prismatic { axis } => vec![("SLIDE", list(&axis))],
+        JointType::Cylindrical { axis } => vec![("HINGE", list(&axis)), ("SLIDE", list(&axis))],
+        JointType::Spherical => vec![("BALL", z)],
+        JointType::Free => vec![("FREE", z)],
+        JointType::Planar => vec![("SLIDE", "X".into()), ("SLIDE", "Y".into()), ("HINGE", z)],
+        JointType::Universal => vec![("HINGE", "X".into()), ("HINGE", "Y".into())],
+        JointType::Translation => vec![("SLIDE", "X".into()), ("SLIDE", "Y".into()), ("SLIDE", z)],
+        JointType::EulerZyx => vec![("HINGE", z), ("HINGE", "Y".into()), ("HINGE", "X".into())],
+    };
+    // No negative zeros.
+    let place = list(&way(others).map(|x| 0.0 - x));
+    Some(parts.iter().map(|(kind, axis)| format!("({kind}, {axis}, {place})")).collect::<Vec<_>>().join(", "))
 }

@@ -44,7 +44,7 @@ def full(upper):
     armature: "model.armature = np.array({armature})\n",
     answers: &[
         ("id", "rnea", "pin.rnea(model, data, q, v, a)"),
-        ("bias", "rnea", "pin.nonLinearEffects(model, data, q, v)"),
+        ("bias", "rnea", "pin.rnea(model, data, q, v, 0 * v)"),
         ("bias", "nonlinear_effects", "pin.nonLinearEffects(model, data, q, v)"),
         ("mass_matrix", "crba_local", "full(pin.crba(model, data, q, pin.Convention.LOCAL))"),
         ("mass_matrix", "crba_world", "full(pin.crba(model, data, q, pin.Convention.WORLD))"),
@@ -66,7 +66,8 @@ fn theirs(robot: &Robot) -> Option<Theirs> {
     Theirs::of(robot, Convention::Pinocchio)
 }
 
-fn body(body: &BodyDescription) -> Option<String> {
+fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
+    let body = bodies.get(at)?;
     let joint = match body.joint.kind {
         JointType::Fixed => return None,
         JointType::Revolute { axis } => about("Revolute", &axis, ""),

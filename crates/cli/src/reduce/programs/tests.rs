@@ -79,6 +79,23 @@ fn every_joint_of_an_engine_is_written_and_answers_the_truth() {
     }
 }
 
+/// A massless body that is only a joint is folded into its child.
+#[test]
+fn massless_bodies_are_joints_of_mujoco() {
+    let mut robot = robot("revolute", "fixed", "");
+    let bodies = &mut robot.description.bodies;
+    let at = (0..bodies.len() - 1).find(|&at| bodies.iter().filter(|body| body.parent == Some(at)).count() == 1).unwrap();
+    (bodies[at].mass, bodies[at].com, bodies[at].inertia) = (0.0, [0.0; 3], [0.0; 6]);
+    bodies[at + 1].joint.placement.rotation = featherbench_model::Placement::default().rotation;
+    let robot = Robot::new(&robot.description, "joints", ModelOrigin::Generated, 1, 7).unwrap();
+    let text = of("mujoco", "1", &finding(Quantity::Bias, "scaled", "qfrc_bias"), &robot).unwrap();
+    assert!(text.contains("bodies.append(None)\n") && text.contains("), (HINGE, "), "{text}");
+    let Some(python) = python() else { return };
+    let output = Command::new(&python).args(["-c", &text]).output().unwrap();
+    let error: f64 = String::from_utf8_lossy(&output.stdout).trim().parse().unwrap();
+    assert!(error < ROUNDING, "{error:e}");
+}
+
 #[test]
 fn armature_is_set_or_there_is_no_program() {
     let text = |engine: &str, method: &str, kind: &str| {
