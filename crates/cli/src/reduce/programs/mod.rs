@@ -35,16 +35,21 @@ struct Interface {
     theirs: fn(&Robot) -> Option<Theirs>,
 }
 
-/// The program of a case; `None` where the engine or the method has no such program, or the engine lacks a joint of the robot.
-pub fn of(engine: &str, version: &str, finding: &Finding, robot: &Robot) -> Option<String> {
-    let interface = match engine {
+/// The interface of an engine; `None` of one without programs.
+fn interface(engine: &str) -> Option<&'static Interface> {
+    Some(match engine {
         "pinocchio" => &pinocchio::PINOCCHIO,
         "mujoco" => &mujoco::MUJOCO,
         "drake" => &drake::DRAKE,
         "dart" => &dart::DART,
         OWN => &featherbench::FEATHERBENCH,
         _ => return None,
-    };
+    })
+}
+
+/// The program of a case; `None` where the engine or the method has no such program, or the engine lacks a joint of the robot.
+pub fn of(engine: &str, version: &str, finding: &Finding, robot: &Robot) -> Option<String> {
+    let interface = interface(engine)?;
     let quantity = if finding.quantity == Quantity::MassMatrixProbe { Quantity::MassMatrix } else { finding.quantity };
     let (.., answer) = interface.answers.iter().find(|(of, method, _)| *of == quantity.name() && *method == finding.method)?;
     let theirs = (interface.theirs)(robot)?;
