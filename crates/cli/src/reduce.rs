@@ -20,10 +20,10 @@ use featherbench_studies::reduce::{
     self, CATALOGUE, CATALOGUE_NAME, Case, Catalogue, Entry, Fault, Finding, Kind, Line, Reduced, Reduction, Status,
 };
 use files::save;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// The rows of an entry that are tried, each of another robot, until one becomes small.
+/// The rows of an entry that are tried, each of another robot or method, until one becomes small.
 const TRIES: usize = 3;
 /// Robots of more bodies than this are tried only while there is no case: a step takes seconds.
 const MANY: usize = 64;
@@ -106,30 +106,35 @@ impl Reducing<'_> {
             }
         };
         let mut best: Option<Found> = None;
-        let mut tried: Vec<&str> = Vec::new();
+        let mut tried: Vec<(&str, &str)> = Vec::new();
         for (row, finding) in &found {
-            if tried.contains(&row.robot.as_str()) {
+            if tried.contains(&(&row.robot, &row.method)) {
                 continue;
             }
             let Some(robot) = robots.iter().find(|robot| robot.name == row.robot) else { continue };
             if tried.len() == TRIES || best.is_some() && robot.description.bodies.len() > MANY {
                 break;
             }
-            tried.push(&row.robot);
+            tried.push((&row.robot, &row.method));
             let Some(case) = of_robot(engine, gates, robot, finding) else { continue };
             let case = Found { row, finding, bodies: robot.description.bodies.len(), kind: case.1, reduced: case.0 };
-            let size = |case: &Found| case.reduced.case.description.bodies.len();
-            if best.as_ref().is_none_or(|best| size(&case) < size(best)) {
+            // An answer that is no number, or none, says more than a measure that is none.
+            let rank = |case: &Found| (case.kind == Kind::NoMeasure, case.reduced.case.description.bodies.len());
+            if best.as_ref().is_none_or(|best| rank(&case) < rank(best)) {
                 best = Some(case);
             }
-            if best.as_ref().is_some_and(|best| size(best) <= reduce::FEW) {
+            if best.as_ref().is_some_and(|best| rank(best) <= (false, reduce::FEW)) {
                 break;
             }
         }
         line.status = match best {
             Some(case) => Status::Reduced(Box::new(self.written(&line, &case)?)),
             None if tried.is_empty() => Status::None { why: "the suite does not have the robots of its rows now".into() },
-            None => Status::None { why: format!("the engine does not show it now at one state of {}", tried.join(", ")) },
+            None => {
+                let robots: BTreeSet<&str> = tried.into_iter().map(|(robot, _)| robot).collect();
+                let robots: Vec<&str> = robots.into_iter().collect();
+                Status::None { why: format!("the engine does not show it now at one state of {}", robots.join(", ")) }
+            }
         };
         Ok(line)
     }

@@ -101,6 +101,12 @@ struct Measure {
 }
 
 impl Measure {
+    /// The answer beside the truth: a force without terms is zero, and there is nothing to divide by.
+    fn beside(truth: String) -> Self {
+        let told = "It prints the answer and the true one, in which a force without terms is zero.";
+        Self { told, text: truth + "print(answer, truth)\n" }
+    }
+
     fn of(quantity: Quantity, metric: &str, robot: &Robot, theirs: &Theirs) -> Option<Self> {
         let mass = true_answer(robot, Quantity::MassMatrix)?;
         let weighted = matches!(quantity, Quantity::InverseDynamics | Quantity::Bias) || metric == "backward";
@@ -119,8 +125,7 @@ impl Measure {
                 let terms = if quantity == Quantity::Bias { &at.bias_force } else { &at.joint_force };
                 let terms = theirs.magnitudes(terms);
                 if terms.contains(&0.0) {
-                    let told = "It prints the answer and the true one, in which a force without terms is zero.";
-                    return Some(Self { told, text: text + "print(answer, truth)\n" });
+                    return Some(Self::beside(text));
                 }
                 write!(text, "terms = np.array({})\nprint((np.abs(answer - truth) / terms).max())\n", list(&terms)).ok()?;
                 per_entry
@@ -132,6 +137,9 @@ impl Measure {
             (Quantity::ForwardDynamics, "backward") => {
                 let scales = ForwardScale::all(robot, std::slice::from_ref(&at));
                 let terms = theirs.magnitudes(&scales.first()?.terms(&true_answer(robot, quantity)?));
+                if terms.contains(&0.0) {
+                    return Some(Self::beside(text));
+                }
                 let mass = theirs.mass(&mass);
                 let rows: Vec<String> = mass.chunks_exact(robot.states.nv).map(list).collect();
                 write!(text, "mass = np.array([{}])\nterms = np.array({})\n", rows.join(", "), list(&terms)).ok()?;

@@ -62,7 +62,7 @@ impl Kind {
             Self::Number => None,
             Self::NoAnswer => Some("there is no answer"),
             Self::NotFinite => Some("the answer has a NaN or an infinity"),
-            Self::NoMeasure => Some("the true answer is zero: the measure has nothing to divide by"),
+            Self::NoMeasure => Some("the measure is no number: the true answer is zero, or there is none"),
         }
     }
 }
