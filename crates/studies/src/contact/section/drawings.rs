@@ -14,13 +14,14 @@ const REGIONS: [(&str, f64, bool); 4] =
     [("one force, it presses", 1.0, false), ("no force: lift-off", 1.0, true), ("no solution", 0.0, false), ("two solutions", 2.0, true)];
 
 fn of_problems(lines: &Lines) -> Vec<Series> {
-    let line = |(index, (method, problems)): (usize, &(&str, Vec<(&str, f64, f64)>))| {
+    let mut series = Vec::new();
+    for (index, (method, problems)) in lines.iter().enumerate() {
         let points = problems.iter().map(|&(problem, iterations, value)| {
             point(problem, iterations, value, [format!("{} iterations", told(iterations)), told(value)])
         });
-        scattered(index, *method, points.collect())
-    };
-    lines.iter().enumerate().map(line).collect()
+        series.push(scattered(index, *method, points.collect()));
+    }
+    series
 }
 
 /// Residuals against iterations, per solver.
@@ -58,12 +59,13 @@ pub(super) fn existence(figures: &Figures) -> Markup {
 
 /// The friction that a body feels against its heading.
 pub(super) fn felt(figures: &Figures) -> Markup {
-    let line = |(index, (section, points)): (usize, &(&str, Vec<(f64, f64)>))| {
+    let mut series = Vec::new();
+    for (index, (section, points)) in figures.felt.iter().enumerate() {
         let points = points.iter().map(|&(heading, felt)| {
             point(section, heading, felt, [format!("heading {}°", told(heading)), format!("{} of the cone's friction", told(felt))])
         });
-        nth(index, *section, points.collect())
-    };
+        series.push(nth(index, *section, points.collect()));
+    }
     let (x, y) = (Axis::linear("heading, °"), Axis::linear("felt friction / μ"));
-    drawing("contact-felt", "Friction that a body feels against its heading", x, y, figures.felt.iter().enumerate().map(line).collect())
+    drawing("contact-felt", "Friction that a body feels against its heading", x, y, series)
 }
