@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use featherbench_report::choices::{Choices, List};
 use featherbench_report::figure::{Axis, Line, Plot, Point, Rows, Series, Style};
 use featherbench_report::fit::Fit;
+use featherbench_report::numbers::larger;
 use featherbench_report::{Overview, Part, labels, robot_chunk};
 use maud::Markup;
 
@@ -249,7 +250,7 @@ fn against_error(overview: &Overview, robot: usize, points: &[&Tradeoff]) -> Mar
 fn front(points: &[&Tradeoff]) -> Vec<[f64; 2]> {
     let front: Vec<[f64; 2]> = points.iter().filter(|point| point.front).map(|point| [point.ns, point.error.max(ZERO)]).collect();
     let (Some(first), Some(last)) = (front.first(), front.last()) else { return Vec::new() };
-    let largest = |of: fn(&Tradeoff) -> f64| points.iter().map(|point| of(point)).fold(ZERO, f64::max);
+    let largest = |of: fn(&Tradeoff) -> f64| points.iter().map(|point| of(point)).fold(ZERO, larger);
     let mut way = vec![[first[0], 2.0 * largest(|point| point.error)], *first];
     for pair in front.windows(2) {
         way.extend([[pair[1][0], pair[0][1]], pair[1]]);
