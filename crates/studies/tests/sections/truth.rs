@@ -35,8 +35,9 @@ fn chosen<'a>(text: &'a str, values: [&str; 3]) -> &'a str {
 
 /// The numbers in the line of a method in the table of fitted exponents: robots, p, p at the end, error at the end.
 fn growth<'a>(shown: &'a str, method: &str) -> Vec<&'a str> {
-    let line = shown.split("<th scope=\"row\">").find_map(|line| line.strip_prefix(&format!("{method}</th>")));
-    let line = line.unwrap_or_else(|| panic!("no {method}: {shown}"));
+    let words = |head: &str| head.split('<').map(|piece| piece.split_once('>').map_or(piece, |(_, text)| text)).collect::<String>();
+    let line = shown.split("<th scope=\"row\">").filter_map(|line| line.split_once("</th>")).find(|(head, _)| words(head) == method);
+    let (_, line) = line.unwrap_or_else(|| panic!("no {method}: {shown}"));
     line.split("</tr>").next().unwrap().split("<td class=\"number\">").skip(1).map(|cell| cell.split('<').next().unwrap()).collect()
 }
 
