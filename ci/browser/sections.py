@@ -201,7 +201,8 @@ def figures(page: Browser, shot: Shot) -> Checks:
     answered = page.until("return document.querySelector('#figures button.copy-data').textContent !== 'Copy data'")
     name = page.run("return document.querySelector('#figures button.copy-data').dataset.figure")
     data = page.run("return featherbench.chunks.get('figure-data')[arguments[0]]", name)
-    yield "the data of a figure can be copied", answered and data.count("\n") > 2, data[:80]
+    # A line of names, and a point at least: of a run on a machine that is not quiet few times count.
+    yield "the data of a figure can be copied", answered and data.count("\n") >= 2, [answered, data[:80]]
     shot("figures")
 
 
