@@ -65,23 +65,25 @@ impl Entries {
         let io = |source| HarnessError::io(path, source);
         let length = file.seek(SeekFrom::End(0)).map_err(io)?;
         file.rewind().map_err(io)?;
-        let mut reader = Counted { inner: BufReader::with_capacity(1 << 16, &file), read: 0 };
+        let mut reader = Kept { inner: BufReader::with_capacity(1 << 16, &file), bytes: Vec::new() };
         let (mut places, mut good, mut entries) = (HashMap::new(), 0, 0);
         let what = loop {
             entries += 1;
+            reader.bytes.clear();
             match Message::read(&mut reader) {
                 Ok(None) => break None,
                 Ok(Some(entry)) => {
                     let seconds = entry.header.get(SECONDS).and_then(Value::as_f64);
-                    match from_message(entry) {
-                        Ok((id, _)) => drop(places.insert(id, Place { at: good, length: reader.read - good, seconds })),
+                    let length = reader.bytes.len() as u64;
+                    match from_message(entry, &reader.bytes) {
+                        Ok((id, _)) => drop(places.insert(id, Place { at: good, length, seconds })),
                         Err(what) => break Some(what),
                     }
+                    good += length;
                 }
                 Err(MessageError::Io(source)) => return Err(io(source)),
                 Err(error @ (MessageError::Truncated | MessageError::Header(_))) => break Some(error.to_string()),
             }
-            good = reader.read;
         };
         let lost = what.map(|what| Lost { path: path.to_owned(), entry: entries, what, bytes: length.saturating_sub(good) });
         Ok(Self { path: path.to_owned(), file, places, good, lost })
@@ -135,31 +137,31 @@ impl Place {
             |what: String| HarnessError::io(path, io::Error::new(io::ErrorKind::InvalidData, format!("byte {}: {what}", self.at)));
         let entry = Message::read(&mut bytes.as_slice()).map_err(|error| damaged(error.to_string()))?;
         let entry = entry.ok_or_else(|| damaged("there is no entry".into()))?;
-        from_message(entry).map(|(_, outcome)| outcome).map_err(damaged)
+        from_message(entry, &bytes).map(|(_, outcome)| outcome).map_err(damaged)
     }
 }
 
-/// A reader that knows how many bytes were taken from it.
-struct Counted<R> {
-    inner: R,
-    read: u64,
+/// A reader that keeps what was taken from it.
+struct Kept<R> {
+    inner: BufReader<R>,
+    bytes: Vec<u8>,
 }
 
-impl<R: Read> Read for Counted<R> {
+impl<R: Read> Read for Kept<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.inner.read(buffer)?;
-        self.read += count as u64;
+        self.bytes.extend_from_slice(&buffer[..count]);
         Ok(count)
     }
 }
 
-impl<R: io::BufRead> io::BufRead for Counted<R> {
+impl<R: Read> io::BufRead for Kept<R> {
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
         self.inner.fill_buf()
     }
 
     fn consume(&mut self, count: usize) {
-        self.read += count as u64;
+        self.bytes.extend(self.inner.buffer().iter().take(count));
         self.inner.consume(count);
     }
 }
@@ -190,8 +192,12 @@ pub(crate) fn to_message(id: &str, cell: &Cell, outcome: &Outcome, seconds: Opti
 /// The key of an entry's checksum, which is that of its bytes without this key.
 const CHECKSUM: &str = "blake3";
 
-/// The cell and its outcome, or what is wrong with the entry.
-fn from_message(mut entry: Message) -> Result<(String, Outcome), String> {
+/// The cell and its outcome, or what is wrong with the entry, whose bytes these are.
+fn from_message(mut entry: Message, bytes: &[u8]) -> Result<(String, Outcome), String> {
+    // JSON has several spellings of a value, and the checksum is that of one: 1E-5 for 1e-5 is damage that it does not see.
+    if entry.to_bytes() != bytes {
+        return Err("it is spelled in another way: it is damaged".into());
+    }
     let Some(Value::String(due)) = entry.header.remove(CHECKSUM) else { return Err("it has no checksum".into()) };
     if featherbench_results::checksum(&entry.to_bytes()) != due {
         return Err("its checksum is another one: it is damaged".into());

@@ -213,6 +213,29 @@ fn a_flipped_bit_never_makes_other_rows() {
     }
 }
 
+/// Another spelling of the same JSON, which one flipped bit makes of an exponent: the checksum is over the values, and the bytes are compared too.
+#[test]
+fn another_spelling_of_a_number_is_damage() {
+    let (bytes, csv, ids) = whole();
+    let folder = tempfile::tempdir().unwrap();
+    let text = bytes.iter().map(|&byte| if byte.is_ascii() { byte as char } else { ' ' }).collect::<String>();
+    let number = text.find("\"seconds\":").unwrap() + "\"seconds\":".len();
+    let end = number + text[number..].find([',', '}']).unwrap();
+    // The seconds of the first entry.
+    let again = match text[number..end].split_once('e') {
+        Some((digits, exponent)) => format!("{digits}E{exponent}"),
+        None => format!("{}e0", &text[number..end]),
+    };
+    let spelled = [&bytes[..number], again.as_bytes(), &bytes[end..]].concat();
+    assert_ne!(spelled, bytes);
+    std::fs::write(folder.path().join(OUTCOMES_NAME), &spelled).unwrap();
+    let (found, lost) = OutcomeStore::look(folder.path()).unwrap();
+    assert!(found.is_empty() && lost.unwrap().to_string().contains("entry 1: "));
+    let study = Counting::default();
+    assert_eq!(run_in(folder.path(), &study, &Silent).unwrap(), csv);
+    assert_eq!(study.counts().len(), ids.len());
+}
+
 const FOLDER: &str = "FEATHERBENCH_TEST_DIE_IN";
 const MOMENT: &str = "FEATHERBENCH_TEST_DIE_AT";
 
