@@ -20,7 +20,7 @@ use std::sync::LazyLock;
 pub type Target = fn(&[u8]);
 
 /// Every target by its name, which is that of its folder of seeds.
-pub const TARGETS: [(&str, Target); 11] = [
+pub const TARGETS: [(&str, Target); 12] = [
     ("urdf", urdf_file),
     ("mjcf", mjcf_file),
     ("neutral", neutral_file),
@@ -31,6 +31,7 @@ pub const TARGETS: [(&str, Target); 11] = [
     ("gates", gates),
     ("records", records),
     ("run_info", run_info),
+    ("drawings", drawings),
     ("contact", contact_file),
 ];
 
@@ -146,6 +147,13 @@ pub fn run_info_seed() -> Vec<u8> {
     serde_json::to_vec(&run).expect("plain data")
 }
 
+/// The drawings of one small robot.
+pub fn drawings_seed() -> Vec<u8> {
+    let drawing = featherbench_bench::drawing::of(&recorded_robot()).expect("a small chain");
+    let drawings = BTreeMap::from([("chain".to_owned(), drawing)]);
+    featherbench_results::drawings_to_text(&drawings, file()).expect("finite").into_bytes()
+}
+
 /// The seeds of a target that are generated, because their formats change.
 pub fn made_seeds(target: &str) -> Vec<Vec<u8>> {
     match target {
@@ -156,6 +164,7 @@ pub fn made_seeds(target: &str) -> Vec<Vec<u8>> {
         }
         "records" => vec![records_seed()],
         "run_info" => vec![run_info_seed()],
+        "drawings" => vec![drawings_seed()],
         _ => Vec::new(),
     }
 }
@@ -210,4 +219,11 @@ pub fn run_info(bytes: &[u8]) {
     let Ok(run) = RunInfo::parse(text(bytes), file()) else { return };
     let written = serde_json::to_string(&run).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(RunInfo::parse(&written, file()).unwrap_or_else(|error| panic!("{error}")), run);
+}
+
+/// A file of drawings.
+pub fn drawings(bytes: &[u8]) {
+    let Ok(drawings) = featherbench_results::parse_drawings(text(bytes), file()) else { return };
+    let written = featherbench_results::drawings_to_text(&drawings, file()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(featherbench_results::parse_drawings(&written, file()).unwrap_or_else(|error| panic!("{error}")), drawings);
 }

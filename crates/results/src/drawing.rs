@@ -56,8 +56,11 @@ impl Drawing {
     }
 }
 
-/// The drawings as the text of their file: a robot a line.
-pub(crate) fn to_text(drawings: &BTreeMap<String, Drawing>, path: &Path) -> Result<String, ResultsError> {
+/// The drawings as the text of their file: a robot a line. `path` is its name in errors.
+///
+/// # Errors
+/// [`ResultsError::NonFinite`]: a number is not finite, which JSON cannot say.
+pub fn drawings_to_text(drawings: &BTreeMap<String, Drawing>, path: &Path) -> Result<String, ResultsError> {
     if let Some((name, _)) = drawings.iter().find(|(_, drawing)| !drawing.is_finite()) {
         return Err(ResultsError::NonFinite { path: path.to_owned(), field: format!("the drawing of {name}"), value: f64::NAN });
     }
@@ -67,7 +70,20 @@ pub(crate) fn to_text(drawings: &BTreeMap<String, Drawing>, path: &Path) -> Resu
     Ok(format!("{{\n{}\n}}\n", lines.join(",\n")))
 }
 
-/// The drawings of such a text; `path` is its name in errors.
-pub(crate) fn parse(text: &str, path: &Path) -> Result<BTreeMap<String, Drawing>, ResultsError> {
+/// The drawings of such a text, by robot; `path` is its name in errors.
+///
+/// ```
+/// use featherbench_results::{drawings_to_text, parse_drawings};
+///
+/// let path = std::path::Path::new("drawings.json");
+/// let text = r#"{"ball":[{"name":"b","parent":null,"mass":1.0,"origin":[0,0,0],"centre":[0,0,0],"axes":[[0,0,0],[0,0,0],[0,0,0]]}]}"#;
+/// let drawings = parse_drawings(text, path).unwrap();
+/// assert_eq!(drawings["ball"].0[0].mass, 1.0);
+/// assert_eq!(parse_drawings(&drawings_to_text(&drawings, path).unwrap(), path).unwrap(), drawings);
+/// ```
+///
+/// # Errors
+/// [`ResultsError::Json`] names the line and the column.
+pub fn parse_drawings(text: &str, path: &Path) -> Result<BTreeMap<String, Drawing>, ResultsError> {
     serde_json::from_str(text).map_err(|source| ResultsError::Json { path: path.to_owned(), source })
 }

@@ -188,7 +188,7 @@ pub fn write_run_with(folder: &Path, run: &RunInfo, records: &[Row], dictionary:
     let drawn: &[&str] = if run.drawings.is_empty() { &[] } else { &[DRAWINGS_NAME] };
     for name in drawn {
         let path = folder.join(name);
-        atomic_write(&path, drawing::to_text(&run.drawings, &path)?.as_bytes())?;
+        atomic_write(&path, drawing::drawings_to_text(&run.drawings, &path)?.as_bytes())?;
     }
     RunInfo { rows: records.len() as u64, ..run.clone() }.write(&folder.join(RUN_NAME))?;
     Checksums::of(folder, &[&[CSV_NAME, SCHEMA_NAME, RUN_NAME], drawn, more].concat())?.write()
@@ -209,7 +209,7 @@ pub fn read_run(folder: &Path) -> Result<(RunInfo, Vec<Row>), ResultsError> {
     let path = folder.join(CSV_NAME);
     let mut run = RunInfo::parse(&text(RUN_NAME)?, &folder.join(RUN_NAME))?;
     if sums.names().any(|name| name == DRAWINGS_NAME) {
-        run.drawings = drawing::parse(&text(DRAWINGS_NAME)?, &folder.join(DRAWINGS_NAME))?;
+        run.drawings = drawing::parse_drawings(&text(DRAWINGS_NAME)?, &folder.join(DRAWINGS_NAME))?;
     }
     let records = parse_csv(&text(CSV_NAME)?, &path)?;
     text(SCHEMA_NAME)?;

@@ -37,7 +37,7 @@ pub use checksum::{CHECKSUMS_NAME, Checksums, checksum, checksum_of, seal, unsea
 pub use columns::{COLUMNS, Column, ColumnType, schema_json};
 pub use dictionary::{Dictionary, Named, Term};
 pub use diff::{Change, Changed, Diff, ERROR_FACTOR, ERROR_FLOOR, TIME_NOISE, diff};
-pub use drawing::{DRAWINGS_NAME, Drawing, DrawnBody};
+pub use drawing::{DRAWINGS_NAME, Drawing, DrawnBody, drawings_to_text, parse_drawings};
 pub use error::ResultsError;
 pub use file::{
     CSV_NAME, RATIO, RUN_NAME, SCHEMA_NAME, atomic_write, atomic_write_with, parse_csv, quick_write, read_csv, read_run, to_csv, write_csv,

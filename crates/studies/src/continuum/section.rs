@@ -11,25 +11,30 @@ use featherbench_results::{Row, RunInfo, Verdict};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 
-/// A name with numbers in pairs.
-type Line = (String, Vec<[f64; 2]>);
+/// A line of a drawing.
+struct Line<'a> {
+    name: String,
+    /// The engine, unless the line is that of a case.
+    engine: Option<&'a str>,
+    points: Vec<[f64; 2]>,
+}
 
 /// What the section draws.
-struct Figures {
+struct Figures<'a> {
     /// Of each element and engine: the number of elements, and the magnitude of the tip's error at α = 1.
-    tip: Vec<Line>,
+    tip: Vec<Line<'a>>,
     /// The same of the first frequency.
-    frequency: Vec<Line>,
+    frequency: Vec<Line<'a>>,
     /// Of each: nanoseconds of a forward dynamics, and the magnitude of the first frequency's error.
-    cost: Vec<Line>,
+    cost: Vec<Line<'a>>,
     /// Points of the elastica under forces.
-    elastica: Vec<Line>,
+    elastica: Vec<Line<'a>>,
     /// Points of modes.
-    modes: Vec<Line>,
+    modes: Vec<Line<'a>>,
     /// Points of the fingers of the gripper.
-    gripper: Vec<Line>,
+    gripper: Vec<Line<'a>>,
     /// Points of the arm with a cable.
-    arm: Vec<Line>,
+    arm: Vec<Line<'a>>,
 }
 
 /// What the rows of a quantity are about, in the order of the table.
@@ -64,7 +69,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     vec![Section::new("continuum", "Continua", body(&rows, &figures(&rows), &chunk))]
 }
 
-fn figures(rows: &[&Row]) -> Figures {
+fn figures<'a>(rows: &[&'a Row]) -> Figures<'a> {
     Figures {
         tip: errors(rows, "tip_error_1", elements),
         frequency: errors(rows, "frequency_error_1", elements),
@@ -92,21 +97,21 @@ fn name(row: &Row) -> String {
 }
 
 /// Of each element a line: what `of` says of a row, and the magnitude of its value.
-fn errors(rows: &[&Row], metric: &str, of: impl Fn(&Row) -> Option<f64>) -> Vec<Line> {
+fn errors<'a>(rows: &[&'a Row], metric: &str, of: impl Fn(&Row) -> Option<f64>) -> Vec<Line<'a>> {
     let mut lines: Vec<Line> = Vec::new();
     for row in rows.iter().filter(|row| row.quantity == "beam" && row.metric == metric) {
         let (Some(x), Some(value)) = (of(row), row.value) else { continue };
         let name = name(row);
-        match lines.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, points)) => points.push([x, value.abs()]),
-            None => lines.push((name, vec![[x, value.abs()]])),
+        match lines.iter_mut().find(|known| known.name == name) {
+            Some(known) => known.points.push([x, value.abs()]),
+            None => lines.push(Line { name, engine: Some(&row.engine), points: vec![[x, value.abs()]] }),
         }
     }
     lines
 }
 
 /// Of each case of shapes whose name begins so, its points.
-fn shapes(rows: &[&Row], begin: &str) -> Vec<Line> {
+fn shapes<'a>(rows: &[&Row], begin: &str) -> Vec<Line<'a>> {
     let mut lines: Vec<(String, BTreeMap<usize, [f64; 2]>)> = Vec::new();
     for row in rows.iter().filter(|row| row.quantity == "shape" && row.family.starts_with(begin)) {
         let place = |axis: &str| row.metric.strip_prefix(axis).and_then(|index| index.parse::<usize>().ok());
@@ -118,7 +123,7 @@ fn shapes(rows: &[&Row], begin: &str) -> Vec<Line> {
             points.entry(index).or_insert([f64::NAN; 2])[axis] = value;
         }
     }
-    lines.into_iter().map(|(name, points)| (name, points.into_values().collect())).collect()
+    lines.into_iter().map(|(name, points)| Line { name, engine: None, points: points.into_values().collect() }).collect()
 }
 
 /// The element with the smallest error of the first frequency at 16 elements or fewer, and the error.

@@ -2,8 +2,8 @@
 //! τ are the same, the largest change, and what to do.
 
 use super::answers::{Answer, Loads, answers};
-use featherbench_report::Part;
 use featherbench_report::numbers::{count, short};
+use featherbench_report::{Overview, Part, engine, robot};
 use featherbench_results::Row;
 use maud::{Markup, html};
 
@@ -11,20 +11,20 @@ use maud::{Markup, html};
 const TOLD: usize = 12;
 
 /// The table of the first page, those first where something differs, and the part with all lines if there are more.
-pub(super) fn opening(rows: &[Row]) -> (Markup, Option<Part>) {
+pub(super) fn opening(overview: &Overview, rows: &[Row]) -> (Markup, Option<Part>) {
     let mut all = answers(rows);
     all.sort_by_key(rank);
     let alike = all.iter().filter(|answer| rank(answer) == ALIKE).count();
     let part = (all.len() > TOLD).then(|| Part {
         name: "import-answers".into(),
         title: "Every robot in every engine".into(),
-        body: html! { div.scroll.tall { (table(&all)) } },
+        body: html! { div.scroll.tall { (table(overview, &all)) } },
     });
     let markup = html! {
         div #import-opening {
             h3 { "How each engine loads the file" }
             p { b { (alike) " of " (count(all.len(), "reading")) } " take the file as it is written and have the same M and τ." }
-            div.scroll { (table(&all[..all.len().min(TOLD)])) }
+            div.scroll { (table(overview, &all[..all.len().min(TOLD)])) }
             @if let Some(part) = &part { details { summary { (count(all.len() - TOLD, "more reading")) } (part.place()) } }
         }
     };
@@ -44,7 +44,7 @@ fn rank(answer: &Answer) -> u8 {
     }
 }
 
-fn table(answers: &[Answer]) -> Markup {
+fn table(overview: &Overview, answers: &[Answer]) -> Markup {
     html! {
         table.compact {
             thead { tr {
@@ -53,8 +53,8 @@ fn table(answers: &[Answer]) -> Markup {
             } }
             tbody { @for answer in answers {
                 tr {
-                    th scope="row" { (answer.robot) }
-                    td { (answer.engine) }
+                    th scope="row" { (robot(overview, &answer.robot)) }
+                    td { (engine(overview, &answer.engine)) }
                     td { (answer.loads.name()) }
                     td { (answer.same_word()) }
                     td { @if let Some(largest) = &answer.largest { (largest.place()) @if let Some(effect) = largest.effect() { " by " (short(effect)) } } @else { "–" } }

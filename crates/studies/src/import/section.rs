@@ -88,7 +88,7 @@ pub(crate) fn sections<'a>(run: &RunInfo, rows: &'a [Row], overview: &Overview<'
         return Vec::new();
     }
     let (script, style) = (include_str!("section.js"), include_str!("section.css"));
-    let (answer, part) = opening(rows);
+    let (answer, part) = opening(overview, rows);
     let (parts, marks) = (part.into_iter().collect(), marks(rows));
     let body = body(run, overview, &imports, &marks);
     vec![Section { script, style, answer: Some(answer), parts, marks, ..Section::new("import", "Imports", body) }]

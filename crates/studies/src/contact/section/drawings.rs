@@ -7,8 +7,8 @@ use maud::Markup;
 
 /// The fastest rate of the map of the sliding rod, rad/s.
 const FASTEST: f64 = 5.0;
-/// Marks of each angle of the map.
-const MARKS: usize = 32;
+/// Marks of each angle of the map: a first page has at most 3000 nodes, and a mark is one.
+const MARKS: usize = 24;
 /// What the laws allow on the map: words, the number of forces, and whether it is above the critical rate.
 const REGIONS: [(&str, f64, bool); 4] =
     [("one force, it presses", 1.0, false), ("no force: lift-off", 1.0, true), ("no solution", 0.0, false), ("two solutions", 2.0, true)];

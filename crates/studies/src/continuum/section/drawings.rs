@@ -2,13 +2,24 @@
 
 use super::Line;
 use crate::figures::{drawing, errors, nth, point, told};
-use featherbench_report::figure::{Axis, Series};
+use featherbench_report::figure::{Axis, Series, style};
 use maud::Markup;
+use std::collections::BTreeMap;
 
+/// Engines have their colours, and their elements are told apart by mark and dash; cases have colours of a list.
 fn series(lines: &[Line], about: impl Fn(f64, f64) -> [String; 2]) -> Vec<Series> {
-    let line =
-        |(index, (name, points)): (usize, &Line)| nth(index, name, points.iter().map(|&[x, y]| point(name, x, y, about(x, y))).collect());
-    lines.iter().enumerate().map(line).collect()
+    let mut elements: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut series = Vec::new();
+    for (index, line) in lines.iter().enumerate() {
+        let points = line.points.iter().map(|&[x, y]| point(&line.name, x, y, about(x, y))).collect();
+        let Some(engine) = line.engine else {
+            series.push(nth(index, &line.name, points));
+            continue;
+        };
+        let element = *elements.entry(engine).and_modify(|count| *count += 1).or_insert(0);
+        series.push(Series { dash: element, ..Series::new(&line.name, style(engine).method(element), points) });
+    }
+    series
 }
 
 /// Errors against the number of elements.
