@@ -1,8 +1,9 @@
 //! `featherbench gate`: what turned a run's gates red, and by how much.
 
-use crate::args::GateArgs;
+use crate::args::{GateArgs, RunArgs};
 use crate::fail::Fail;
 use crate::ranges;
+use crate::robots;
 use crate::root::Root;
 use crate::say::{self, say};
 use ::featherbench_results::{Expectation, GateKind, Properties, RobotInfo, Row, RunInfo, atomic_write};
@@ -47,7 +48,10 @@ fn conditions(root: &Root, suite: &Suite, folder: &Path, info: &RunInfo, records
     let externals = info.engines.iter().filter(|engine| engine.build.contains_key(provenance::PROGRAM)).map(|engine| engine.name.as_str());
     let gates = root.read_gates()?.with_external(&externals.collect::<Vec<_>>()).with_robots(properties(folder, info)?)?;
     let mut conditions = gates.conditions(suite, records, true);
-    conditions.extend(Counts::read(&root.counts())?.conditions(info, suite.engines(), records));
+    // A command that is none of `run` is that of an older program.
+    if RunArgs::of_command(&info.command).is_none_or(|run| robots::is_own_size(suite, run.size)) {
+        conditions.extend(Counts::read(&root.counts())?.conditions(info, suite.engines(), records));
+    }
     conditions.extend(info.expected.iter().filter(|condition| condition.kind == GateKind::Engine).cloned());
     Ok(conditions)
 }

@@ -1,4 +1,4 @@
-//! `featherbench reduce`: the failures of a run as a catalogue of small robots, each with a program in the engine's own interface.
+//! `featherbench reduce`: the failures of runs as a catalogue of small robots, each with a program in the engine's own interface.
 //!
 //! It has a line for each known deviation of each engine, and says why where there is no case. It is a command of its own and no part of a
 //! run: it asks engines some hundred times for each case.
@@ -6,14 +6,13 @@
 mod files;
 mod programs;
 
-use crate::args::{Cli, Command, ReduceArgs, RunArgs};
+use crate::args::{ReduceArgs, RunArgs};
 use crate::fail::Fail;
 use crate::oracles;
 use crate::robots;
 use crate::root::Root;
 use crate::say::say;
-use ::featherbench_results::{Row, RunInfo, words};
-use clap::Parser;
+use ::featherbench_results::{Row, RunInfo};
 use featherbench_bench::{Engine, Gates, OWN, Robot};
 use featherbench_engines::{Featherbench, Limits};
 use featherbench_studies::reduce::{
@@ -28,22 +27,34 @@ const TRIES: usize = 3;
 /// Robots of more bodies than this are tried only while there is no case: a step takes seconds.
 const MANY: usize = 64;
 
-/// Writes the catalogue of a run.
+/// Writes the catalogue of one run or several.
 pub fn reduce(root: &Root, args: &ReduceArgs) -> Result<(), Fail> {
-    let (info, rows) = ::featherbench_results::read_run(&args.folder)?;
+    let folder = folder(args)?;
+    let mut runs: Vec<RunInfo> = Vec::new();
+    let mut rows: Vec<Row> = Vec::new();
+    for place in &args.folders {
+        let (info, its) = ::featherbench_results::read_run(place)?;
+        if let Some(at) = runs.iter().position(|run| run.run == info.run) {
+            let [a, b] = [&args.folders[at], place].map(|place| place.display());
+            return Err(Fail::input(format!("{a} and {b} are both the run {}: a case names its run; leave one out", info.run)));
+        }
+        runs.push(info);
+        rows.extend(its);
+    }
     let gates = root.read_gates()?;
     let entries = reduce::entries(&gates, &rows, &args.cells);
     if entries.iter().all(|entry| entry.found.is_empty()) {
+        let places: Vec<String> = args.folders.iter().map(|place| place.display().to_string()).collect();
         let message = format!(
             "{}: there is nothing to reduce: no {} of the studies agreement, accuracy, sweep and derivatives fails, is a known deviation or has an \
              error against the truth above rounding",
-            args.folder.display(),
+            places.join(", "),
             if args.cells.is_empty() { "row" } else { "row of these cells" }
         );
         return Err(Fail::input(message));
     }
-    let robots = robots_of(root, &info, &args.folder)?;
-    let folder = args.folder.join(CATALOGUE);
+    let robots = runs.iter().zip(&args.folders).map(|(info, place)| Ok((info.run.as_str(), robots_of(root, info, place)?)));
+    let robots: BTreeMap<&str, Vec<Robot>> = robots.collect::<Result<_, Fail>>()?;
     let mut reducing = Reducing { root, gates: &gates, robots: &robots, folder: &folder, engines: BTreeMap::new() };
     let mut lines = Vec::new();
     for entry in entries {
@@ -63,8 +74,9 @@ pub fn reduce(root: &Root, args: &ReduceArgs) -> Result<(), Fail> {
         return Err(missing);
     }
     let path = folder.join(CATALOGUE_NAME);
-    let known = if args.cells.is_empty() { None } else { Catalogue::read(&args.folder)? };
-    let catalogue = known.unwrap_or_else(|| Catalogue { run: info.run.clone(), lines: Vec::new() }).renewed(lines);
+    let known = if args.cells.is_empty() { None } else { Catalogue::read(&folder)? };
+    let runs = runs.iter().map(|run| run.run.clone()).collect();
+    let catalogue = known.unwrap_or(Catalogue { runs, lines: Vec::new() }).renewed(lines);
     save(&folder.join("README.md"), &readme(&catalogue))?;
     // Last: a catalogue names no file that is not there.
     save(&path, &format!("{}\n", serde_json::to_string_pretty(&catalogue).map_err(|error| Fail::input(error.to_string()))?))?;
@@ -72,11 +84,21 @@ pub fn reduce(root: &Root, args: &ReduceArgs) -> Result<(), Fail> {
     Ok(())
 }
 
+/// The catalogue's folder.
+fn folder(args: &ReduceArgs) -> Result<PathBuf, Fail> {
+    match (&args.out, args.folders.as_slice()) {
+        (Some(out), _) => Ok(out.clone()),
+        (None, [run]) => Ok(run.join(CATALOGUE)),
+        (None, runs) => Err(Fail::input(format!("{} runs have one catalogue: say its folder by --out DIR", runs.len()))),
+    }
+}
+
 /// What is at hand while cases are reduced.
 struct Reducing<'a> {
     root: &'a Root,
     gates: &'a Gates,
-    robots: &'a [Robot],
+    /// The robots of each run.
+    robots: &'a BTreeMap<&'a str, Vec<Robot>>,
     folder: &'a Path,
     engines: BTreeMap<String, Result<Box<dyn Engine>, Fail>>,
 }
@@ -106,16 +128,18 @@ impl Reducing<'_> {
             }
         };
         let mut best: Option<Found> = None;
-        let mut tried: Vec<(&str, &str)> = Vec::new();
+        let mut tried: Vec<[&str; 3]> = Vec::new();
         for (row, finding) in &found {
-            if tried.contains(&(&row.robot, &row.method)) {
+            let way = [&row.run, &row.robot, &row.method].map(String::as_str);
+            if tried.contains(&way) {
                 continue;
             }
-            let Some(robot) = robots.iter().find(|robot| robot.name == row.robot) else { continue };
+            let of_run = robots.get(row.run.as_str()).into_iter().flatten();
+            let Some(robot) = of_run.into_iter().find(|robot| robot.name == row.robot) else { continue };
             if tried.len() == TRIES || best.is_some() && robot.description.bodies.len() > MANY {
                 break;
             }
-            tried.push((&row.robot, &row.method));
+            tried.push(way);
             let Some(case) = of_robot(engine, gates, robot, finding) else { continue };
             let case = Found { row, finding, bodies: robot.description.bodies.len(), kind: case.1, reduced: case.0 };
             // An answer that is no number, or none, says more than a measure that is none.
@@ -129,9 +153,9 @@ impl Reducing<'_> {
         }
         line.status = match best {
             Some(case) => Status::Reduced(Box::new(self.written(&line, &case)?)),
-            None if tried.is_empty() => Status::None { why: "the suite does not have the robots of its rows now".into() },
+            None if tried.is_empty() => Status::None { why: "the suites do not have the robots of its rows now".into() },
             None => {
-                let robots: BTreeSet<&str> = tried.into_iter().map(|(robot, _)| robot).collect();
+                let robots: BTreeSet<&str> = tried.into_iter().map(|[_, robot, _]| robot).collect();
                 let robots: Vec<&str> = robots.into_iter().collect();
                 Status::None { why: format!("the engine does not show it now at one state of {}", robots.join(", ")) }
             }
@@ -150,6 +174,7 @@ impl Reducing<'_> {
         }
         let number = |severity: f64| (case.kind == Kind::Number).then_some(severity);
         Ok(Reduction {
+            run: case.row.run.clone(),
             robot: case.row.robot.clone(),
             cell: case.row.cell.clone(),
             quantity: case.finding.quantity.name().into(),
@@ -199,24 +224,25 @@ fn told(error: Option<f64>) -> String {
 /// The catalogue as a table.
 fn readme(catalogue: &Catalogue) -> String {
     let mut text = format!(
-        "# Catalogue of the run {}\n\nA line for each known deviation of each engine, and for each method that fails or has an error above rounding. A case is \
+        "# Catalogue of failures: {}\n\nA line for each known deviation of each engine, and for each method that fails or has an error above rounding. A case is \
          the smallest robot and state that still show it, with at least {} of its error, by the measure of its study.\n\n\
-         | engine | what | robot | bodies | error | bodies, reduced | error, reduced | reproduction |\n|---|---|---|---|---|---|---|---|\n",
-        catalogue.run,
+         | engine | what | run | robot | bodies | error | bodies, reduced | error, reduced | reproduction |\n|---|---|---|---|---|---|---|---|---|\n",
+        catalogue.runs.join(", "),
         reduce::KEEP
     );
     for Line { name, engine, class, reproduction, status, .. } in &catalogue.lines {
         let reproduction = reproduction.as_deref().unwrap_or("–");
         text += &match status {
             Status::Reduced(case) => format!(
-                "| {engine} | [{class}]({name}/README.md) | {} | {} | {} | {} | {} | {reproduction} |\n",
+                "| {engine} | [{class}]({name}/README.md) | {} | {} | {} | {} | {} | {} | {reproduction} |\n",
+                case.run,
                 case.robot,
                 case.bodies,
                 told(case.error),
                 case.reduced_bodies,
                 told(case.reduced_error)
             ),
-            Status::None { why } => format!("| {engine} | {class} | no case: {why} | | | | | {reproduction} |\n"),
+            Status::None { why } => format!("| {engine} | {class} | no case: {why} | | | | | | {reproduction} |\n"),
         };
     }
     text
@@ -224,14 +250,8 @@ fn readme(catalogue: &Catalogue) -> String {
 
 /// The robots of a run, made again from its command.
 fn robots_of(root: &Root, info: &RunInfo, folder: &Path) -> Result<Vec<Robot>, Fail> {
-    let all = words(&info.command).map_err(Fail::input)?;
-    // `cargo run --release -- run …`; a run without arguments is that of the default suite.
-    let given = std::iter::once("featherbench").chain(all.iter().skip_while(|word| *word != "--").skip(1).map(String::as_str));
-    let run = match Cli::try_parse_from(given).map(|cli| cli.command) {
-        Ok(None) => RunArgs::default_suite(),
-        Ok(Some(Command::Run(run))) => run,
-        Ok(Some(_)) | Err(_) => return Err(Fail::input(format!("the command of the run is none of `run`: {}", info.command))),
-    };
+    let run = RunArgs::of_command(&info.command);
+    let run = run.ok_or_else(|| Fail::input(format!("{}: its command is none of `run`: {}", folder.display(), info.command)))?;
     let loaded = robots::load(root, &run.suite, info.live, Some(info.seed), run.size)?;
     if loaded.hash != info.suite_hash {
         eprintln!("note: {}: the suite {} is another one now", folder.display(), run.suite);

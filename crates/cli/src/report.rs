@@ -8,7 +8,7 @@ use crate::instructions;
 use crate::say::say;
 use ::featherbench_results::{Row, RunInfo};
 use featherbench_report::{Findings, Section};
-use featherbench_studies::reduce::Catalogue;
+use featherbench_studies::reduce::{CATALOGUE, Catalogue};
 use std::path::{Path, PathBuf};
 
 /// Writes the report of a finished run again, and its figures for a paper and opens it if that is wanted.
@@ -33,7 +33,7 @@ pub fn render(folder: &Path, info: &RunInfo, records: &[Row]) -> Result<PathBuf,
 
 /// The sections of a run's report: those of its studies, and that of the catalogue of its failures, if `reduce` has made one.
 fn sections(folder: &Path, info: &RunInfo, records: &[Row]) -> Result<Vec<Section>, Fail> {
-    let catalogue = Catalogue::read(folder)?.map(|catalogue| featherbench_studies::reduce::section(&catalogue));
+    let catalogue = Catalogue::read(&folder.join(CATALOGUE))?.map(|catalogue| featherbench_studies::reduce::section(&catalogue));
     Ok(featherbench_studies::sections(info, records).into_iter().chain(catalogue).collect())
 }
 

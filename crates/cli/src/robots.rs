@@ -21,6 +21,13 @@ pub struct Loaded {
     pub suite: Suite,
     pub hash: String,
     pub robots: Vec<Robot>,
+    /// Whether it draws as many robots as its file says.
+    pub own_size: bool,
+}
+
+/// Whether a run with this `--size` draws as many robots as the suite's file says: `ci/counts.csv` is about such a run.
+pub fn is_own_size(suite: &Suite, size: Option<NonZeroUsize>) -> bool {
+    size.is_none_or(|size| suite.draw.as_ref().is_some_and(|draw| draw.size == size.get()))
 }
 
 /// Reads a suite by name or path, and its robots; another seed than its own draws other states, another size more or fewer robots.
@@ -28,6 +35,7 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>, size: Optio
     let path = suite_path(root, suite)?;
     let (mut parsed, mut hash) = Suite::read(&path)?;
     parsed.seed = seed.unwrap_or(parsed.seed);
+    let own_size = is_own_size(&parsed, size);
     if let Some(size) = size {
         parsed = parsed.with_size(size.get())?;
         hash = featherbench_bench::hash::of_parts(&[hash.as_bytes(), &size.get().to_le_bytes()]);
@@ -68,7 +76,7 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>, size: Optio
         }
     }
     let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    Ok(Loaded { name, suite: parsed, hash, robots })
+    Ok(Loaded { name, suite: parsed, hash, robots, own_size })
 }
 
 /// The file of a suite that is given by name or path.

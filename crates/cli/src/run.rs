@@ -74,7 +74,7 @@ impl Prepared {
 
     /// What the rows of a run that starts now share.
     pub fn describe(&self, root: &Root, args: &RunArgs, started: SystemTime) -> Result<RunInfo, Fail> {
-        let Loaded { name, hash, suite, robots } = &self.loaded;
+        let Loaded { name, hash, suite, robots, .. } = &self.loaded;
         let about = About { suite: name, hash, seed: suite.seed, live: args.live, robots };
         describe(root, self.program.clone(), &about, &self.opened, started)
     }
@@ -84,7 +84,7 @@ impl Prepared {
         let suite = &self.loaded.suite;
         let complete = self.filter.is_none();
         run.info.expected = self.gates.conditions(suite, rows, complete);
-        if complete {
+        if complete && self.loaded.own_size {
             run.info.expected.extend(self.counts.conditions(&run.info, suite.engines(), rows));
         }
         let asked: Vec<&str> = suite.engines().iter().map(String::as_str).chain(externals(args)).collect();

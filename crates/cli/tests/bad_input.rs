@@ -137,6 +137,19 @@ fn wrong_usage_is_exit_code_two() {
 }
 
 #[test]
+fn runs_share_a_catalogue_only_where_cases_can_name_theirs() {
+    let sandbox = Sandbox::new();
+    let run = ["run", "--suite", "smoke", "--no-timing", "--filter", "agreement/chain-planar-2/featherbench/id/", "--out"];
+    for out in ["a", "b/a"] {
+        assert_eq!(sandbox.run(&[&run[..], &[out]].concat()).code, Some(0));
+    }
+    sandbox.run(&["reduce", "a", "b/a"]).expect(2, &["2 runs have one catalogue", "--out DIR"]);
+    sandbox.run(&["reduce", "a", "b/a", "--out", "c"]).expect(2, &["a and b/a are both the run a"]);
+    sandbox.run(&["reduce", "a", "--out", "c"]).expect(2, &["a: there is nothing to reduce"]);
+    assert!(!sandbox.path("c").exists());
+}
+
+#[test]
 fn output_folders_are_never_overwritten() {
     let sandbox = Sandbox::new();
     std::fs::create_dir(sandbox.path("full")).unwrap();

@@ -116,6 +116,15 @@ fn truncated_rows_are_refused_by_file() {
     assert_eq!(found[0]["culprit"]["quantity"], "com");
 }
 
+/// The lock file is about a suite as its file draws it: a smaller draw lacks nothing. Its engines are missing here, and that is all.
+#[test]
+fn a_smaller_draw_lacks_no_cells() {
+    let sandbox = Sandbox::new();
+    sandbox.run(&["run", "--suite", "sweep", "--size", "2", "--no-timing", "--out", "out"]).expect(1, &["engine drake answers"]);
+    let found = new(&sandbox, "out");
+    assert!(!found.is_empty() && found.iter().all(|found| found["gate"] == "engine"), "{found:?}");
+}
+
 #[test]
 fn every_gate_fires() {
     let sandbox = Sandbox::new();

@@ -2,6 +2,7 @@
 
 mod asked;
 pub(crate) mod contacts;
+mod folders;
 mod import;
 pub(crate) mod loops;
 pub(crate) mod residual;
@@ -364,7 +365,7 @@ impl Session {
 pub(crate) fn checked(answer: Message) -> Result<Message, NoAnswer> {
     let reason = || match answer.text("reason") {
         "" => "the oracle gives no reason".to_owned(),
-        reason => reason.to_owned(),
+        reason => folders::without_folders(reason),
     };
     match answer.text("status") {
         "ok" => Ok(answer),

@@ -68,7 +68,7 @@ fn every_known_deviation_and_every_reproduction_has_a_line() {
     assert!(of("pinocchio-zyx-aba").found.is_empty() && why("pinocchio-zyx-aba").contains("fd of operations"));
     assert!(why("drake-weightless").contains("difference from mujoco"));
     assert!(why("pinocchio-height-field").contains("reading a file"));
-    assert!(why("pinocchio-world-aba").contains("no row of this run"));
+    assert!(why("pinocchio-world-aba").contains("no row shows it"));
     assert!(why("dart-zyx-aba").contains("no row of dart"));
     // Those of named cells alone.
     let named: Vec<String> = entries(&gates, &rows[..1], &["3f".into()]).into_iter().map(|entry| entry.line.name).collect();
@@ -76,7 +76,7 @@ fn every_known_deviation_and_every_reproduction_has_a_line() {
     assert!(entries(&gates, &rows, &["0".into()]).is_empty());
 
     let lines: Vec<Line> = all.into_iter().map(|entry| entry.line).collect();
-    let catalogue = Catalogue { run: "a".into(), lines: lines.clone() };
+    let catalogue = Catalogue { runs: vec!["a".into()], lines: lines.clone() };
     let page = section(&catalogue).body.0;
     assert!(lines.iter().all(|line| page.contains(&line.class)), "the page has every line");
     // Named cells renew their lines.
@@ -88,12 +88,11 @@ fn every_known_deviation_and_every_reproduction_has_a_line() {
 fn a_catalogue_is_read_as_it_was_written_or_names_its_file() {
     let folder = tempfile::tempdir().unwrap();
     assert_eq!(Catalogue::read(folder.path()).unwrap(), None);
-    std::fs::create_dir(folder.path().join("catalogue")).unwrap();
-    let path = folder.path().join("catalogue/catalogue.json");
+    let path = folder.path().join("catalogue.json");
     std::fs::write(&path, "{").unwrap();
     assert!(Catalogue::read(folder.path()).unwrap_err().to_string().contains("catalogue.json"));
     let lines = entries(&gates_of_project(), &[], &[]).into_iter().map(|entry| entry.line).collect();
-    let catalogue = Catalogue { run: "a".into(), lines };
+    let catalogue = Catalogue { runs: vec!["a".into()], lines };
     std::fs::write(&path, serde_json::to_string(&catalogue).unwrap()).unwrap();
     assert_eq!(Catalogue::read(folder.path()).unwrap(), Some(catalogue));
 }

@@ -1,9 +1,9 @@
 //! The registry: every suite of the project makes its studies, and an unknown one is named.
 
 use featherbench_bench::alone::Question;
-use featherbench_bench::{Counts, NoAnswer, Suite};
+use featherbench_bench::{Counts, Engines, Gates, NoAnswer, Suite};
 use featherbench_studies::{Setup, names, of_suite};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -46,6 +46,29 @@ fn every_suite_makes_its_studies() {
     }
     assert!(suites_read >= 9, "{suites_read} suites");
     assert!(seen.len() >= 9, "{seen:?}");
+}
+
+/// A complete run of a suite with reproductions has all of them: one that is added to an engine's deviations is counted in every such suite.
+#[test]
+fn suites_count_every_reproduction() {
+    let ci = suites().join("../../ci");
+    let engines = Engines::read(&ci.join("../oracles/engines.toml")).unwrap();
+    let gates = Gates::read(&ci, &engines).unwrap();
+    let mut due: BTreeMap<&str, usize> = BTreeMap::new();
+    for shown in gates.reproductions() {
+        *due.entry(&shown.engine).or_default() += 1;
+    }
+    let counts = std::fs::read_to_string(ci.join("counts.csv")).unwrap();
+    let mut found: BTreeMap<&str, BTreeMap<&str, usize>> = BTreeMap::new();
+    for line in counts.lines() {
+        if let [suite, "reproductions", engine, _, cells, _] = line.split(',').collect::<Vec<_>>()[..] {
+            found.entry(suite).or_default().insert(engine, cells.parse().unwrap());
+        }
+    }
+    assert!(found.len() >= 2 && due.len() >= 3, "{found:?}");
+    for (suite, counted) in found {
+        assert_eq!(counted, due, "{suite} in counts.csv: `featherbench gate RUN --counts --write` writes it");
+    }
 }
 
 #[test]

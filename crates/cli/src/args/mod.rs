@@ -9,6 +9,7 @@ pub use judge::{DiffArgs, GateArgs, HistoryArgs, ReportArgs};
 pub use sweep::{ExportArgs, MergeArgs, PlanArgs, ReduceArgs, SweepArgs};
 
 use crate::external::External;
+use ::featherbench_results::words;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use featherbench_bench::shard::Shard;
 use std::ffi::OsString;
@@ -374,6 +375,18 @@ impl RunArgs {
         Bare::parse_from(["featherbench"]).run
     }
 
+    /// The run that a command defines, as `run.json` keeps it: `cargo run --release -- run …`, without arguments that of the default suite. `None`
+    /// if it is a command of another kind.
+    pub fn of_command(command: &str) -> Option<Self> {
+        let all = words(command).ok()?;
+        let given = std::iter::once("featherbench").chain(all.iter().skip_while(|word| *word != "--").skip(1).map(String::as_str));
+        match Cli::try_parse_from(given).ok()?.command {
+            None => Some(Self::default_suite()),
+            Some(Command::Run(run)) => Some(run),
+            Some(_) => None,
+        }
+    }
+
     /// The run that some arguments of `run` define.
     pub fn of(arguments: &[String]) -> Result<Self, clap::Error> {
         Ok(Bare::try_parse_from(std::iter::once("run").chain(arguments.iter().map(String::as_str)))?.run)
@@ -419,5 +432,9 @@ mod tests {
         let whole = RunArgs::of(&RunArgs::of(&part).unwrap().defining()).unwrap();
         assert_eq!(format!("{whole:?}"), format!("{:?}", RunArgs::of(&all).unwrap()));
         assert_eq!(RunArgs::default_suite().defining(), ["--suite", "default"]);
+        let size = |command: &str| RunArgs::of_command(command).map(|run| (run.suite, run.size.map(NonZeroUsize::get)));
+        assert_eq!(size("cargo run --release"), Some(("default".into(), None)));
+        assert_eq!(size("cargo run --release -- run --suite sweep --size 7"), Some(("sweep".into(), Some(7))));
+        assert_eq!([size("cargo run --release -- compare a.urdf"), size("cargo run --release -- run --suite 'a")], [None, None]);
     }
 }

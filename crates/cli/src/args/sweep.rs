@@ -8,14 +8,19 @@ use std::path::PathBuf;
 
 #[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "Examples:\n  featherbench run --live --suite sweep --out reports/errors\n  featherbench reduce reports/errors\n  featherbench reduce reports/errors 3f2a\n\nEach case is a folder of RUN/catalogue: the smallest robot and state that keep a tenth of the error, in the neutral format and in URDF and MJCF where\nthese hold it, the state with the true answer, and a program in the engine's own interface where the engine has all joints. Known deviations without\na case have a line that says why. Engines are asked themselves, and must be installed. `report RUN` shows the catalogue afterwards; programs read\nRUN/catalogue/catalogue.json."
+    after_help = "Examples:\n  featherbench run --live --suite sweep --out reports/errors\n  featherbench reduce reports/errors\n  featherbench reduce reports/errors --cell 3f2a\n  featherbench reduce reports/night reports/errors --out reports/catalogue\n\nEach case is a folder of RUN/catalogue, or of --out DIR: the smallest robot and state that keep a tenth of the error, in the neutral format and in URDF and MJCF where\nthese hold it, the state with the true answer, and a program in the engine's own interface where the engine has all joints. Known deviations without\na case have a line that says why. Engines are asked themselves, and must be installed. `report RUN` shows the catalogue of RUN afterwards; programs\nread catalogue.json. Of several runs, a case is from the one whose rows show it most."
 )]
 pub struct ReduceArgs {
-    /// The run's folder: of a suite with the study agreement, accuracy, sweep or derivatives.
-    pub folder: PathBuf,
-    /// Cells, by the beginnings of their ids; by default the worst of each known deviation, and of each engine, quantity and method.
-    #[arg(value_name = "CELL")]
+    /// The folders of runs, each of a suite with the study agreement, accuracy, sweep or derivatives.
+    #[arg(required = true, value_name = "RUN")]
+    pub folders: Vec<PathBuf>,
+    /// Only this cell, by the beginning of its id; may be repeated. By default the worst of each known deviation, and of each engine, quantity and
+    /// method.
+    #[arg(long = "cell", value_name = "ID")]
     pub cells: Vec<String>,
+    /// The catalogue's folder; by default RUN/catalogue. Several runs have one catalogue, which needs it.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// What is planned, in shards or as tasks.

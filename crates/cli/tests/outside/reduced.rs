@@ -32,7 +32,7 @@ pub fn programs_print_their_errors(python: &Path) -> Outcome {
         let out = run.to_str().unwrap();
         featherbench(&["run", "--suite", suite, "--live", "--no-timing", "--filter", filter, "--out", out]).expect(0, &["report:"]);
         featherbench(&["reduce", out]).expect(0, &[name, "cases:"]);
-        let catalogue = Catalogue::read(&run).unwrap().unwrap();
+        let catalogue = Catalogue::read(&run.join("catalogue")).unwrap().unwrap();
         assert!(catalogue.lines.len() > 60, "{suite}: a line for each known deviation");
         let mut shown = Vec::new();
         for line in &catalogue.lines {

@@ -1,5 +1,6 @@
 //! The answer to the operation `import`: what an engine's own parser has made of a file.
 
+use super::folders::without_folders;
 use featherbench_bench::{Import, ImportNote};
 use featherbench_model::{BodyDescription, Description};
 use featherbench_protocol::Message;
@@ -65,7 +66,7 @@ fn note(note: &Value) -> ImportNote {
     ImportNote {
         cause: text("cause").unwrap_or_default(),
         about: text("about"),
-        text: text("text").unwrap_or_default(),
+        text: text("text").map(|text| without_folders(&text)).unwrap_or_default(),
         numbers: numbers.unwrap_or_default(),
     }
 }

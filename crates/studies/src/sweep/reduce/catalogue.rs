@@ -1,4 +1,4 @@
-//! The catalogue of a run's failures, as data: a line for each known deviation of each engine, and for each failure that is none.
+//! The catalogue of the failures of runs, as data: a line for each known deviation of each engine, and for each failure that is none.
 
 use super::finding::Fault;
 use featherbench_results::ResultsError;
@@ -12,7 +12,7 @@ pub const CATALOGUE: &str = "catalogue";
 /// The catalogue as data, in its folder.
 pub const CATALOGUE_NAME: &str = "catalogue.json";
 
-/// The catalogue of a run: `catalogue/catalogue.json`.
+/// The catalogue of one run or several: `catalogue.json`.
 ///
 /// ```
 /// use featherbench_studies::reduce::{Catalogue, Line, Status};
@@ -23,9 +23,9 @@ pub const CATALOGUE_NAME: &str = "catalogue.json";
 ///     class: "zyx-aba".into(),
 ///     reason: "Euler angles near a pitch of 90°".into(),
 ///     reproduction: None,
-///     status: Status::None { why: "this run has no row of it".into() },
+///     status: Status::None { why: "no row shows it".into() },
 /// };
-/// let catalogue = Catalogue { run: "a".into(), lines: vec![line] };
+/// let catalogue = Catalogue { runs: vec!["a".into()], lines: vec![line] };
 /// let text = serde_json::to_string(&catalogue).unwrap();
 /// assert_eq!(serde_json::from_str::<Catalogue>(&text).unwrap(), catalogue);
 /// assert!(text.contains(r#""status":"none""#));
@@ -33,8 +33,8 @@ pub const CATALOGUE_NAME: &str = "catalogue.json";
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Catalogue {
-    /// The run.
-    pub run: String,
+    /// The runs, by name.
+    pub runs: Vec<String>,
     /// Its lines: engine after engine, known deviations first.
     pub lines: Vec<Line>,
 }
@@ -73,6 +73,8 @@ pub enum Status {
 /// A reduced case: where it comes from, and what it is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reduction {
+    /// The run that shows it.
+    pub run: String,
     /// The robot that it was reduced from.
     pub robot: String,
     /// The cell.
@@ -102,12 +104,12 @@ pub struct Reduction {
 }
 
 impl Catalogue {
-    /// Reads the catalogue in a run's folder; `None` if there is none.
+    /// Reads the catalogue in a folder, which of a run is [`CATALOGUE`]; `None` if there is none.
     ///
     /// # Errors
     /// [`ResultsError`], naming the file.
-    pub fn read(run: &Path) -> Result<Option<Self>, ResultsError> {
-        let path = run.join(CATALOGUE).join(CATALOGUE_NAME);
+    pub fn read(folder: &Path) -> Result<Option<Self>, ResultsError> {
+        let path = folder.join(CATALOGUE_NAME);
         if !path.exists() {
             return Ok(None);
         }

@@ -41,7 +41,7 @@ pub struct Entry<'a> {
     pub found: Vec<(&'a Row, Finding)>,
 }
 
-/// The entries of a run: one for each known deviation and each reproduction, then one for each method of an engine that fails for no known
+/// The entries of the rows of one run or several: one for each known deviation and each reproduction, then one for each method of an engine that fails for no known
 /// cause, then one for each whose error is above rounding in the studies `accuracy` and `sweep`.
 ///
 /// With cells named by the beginnings of their ids, those that have a row of these cells.
@@ -72,9 +72,9 @@ fn of_deviation<'a>(known: &Deviation, rows: &[&'a Row]) -> Entry<'a> {
     let why = if of_files {
         "it is about reading a file, and about no robot at a state: the file shows it".to_owned()
     } else if of_engine().next().is_none() {
-        format!("this run has no row of {}", known.engine)
+        format!("there is no row of {}", known.engine)
     } else if its.is_empty() {
-        "no row of this run shows it".to_owned()
+        "no row shows it".to_owned()
     } else if its.iter().all(|row| OF_SEVERAL.contains(&row.metric.as_str())) {
         let others: BTreeSet<&str> = its.iter().map(|row| row.reference.as_str()).collect();
         format!("only its difference from {} shows it, and not its own error", others.into_iter().collect::<Vec<_>>().join(", "))

@@ -16,7 +16,7 @@ const TERMS: &[(&str, &str)] = &[(
 /// ```
 /// use featherbench_studies::reduce::{Catalogue, section};
 ///
-/// let section = section(&Catalogue { run: "a".into(), lines: Vec::new() });
+/// let section = section(&Catalogue { runs: vec!["a".into()], lines: Vec::new() });
 /// assert!(section.anchor == "catalogue" && section.appendix);
 /// ```
 pub fn section(catalogue: &Catalogue) -> Section {
