@@ -75,6 +75,7 @@ fn the_first_page_says_what_each_engine_loads_and_what_to_do() {
         ["one", "mujoco", "yes", "no", "arm: inertia by 0.20", "write an inertia of 'arm' that a body can have"],
     ];
     assert_eq!(lines.len(), 5);
+    assert!(opening.contains("<a href=\"engines/drake.html\">drake</a>") && opening.contains("<a href=\"robots/one.html\">one</a>"));
     for (line, due) in lines.iter().zip(due) {
         assert_eq!(line[..], due, "{lines:?}");
     }
@@ -82,9 +83,9 @@ fn the_first_page_says_what_each_engine_loads_and_what_to_do() {
     assert!(lines[3..].iter().all(|line| line[2..] == ["yes", "yes", "–", "nothing"]), "{lines:?}");
 }
 
-/// The texts of a line's cells.
+/// The texts of a line's cells, which may be those of links.
 fn cells(line: &str) -> Vec<String> {
-    let inner = |cell: &str| cell.split('>').nth(1).unwrap_or_default().split('<').next().unwrap_or_default().to_owned();
+    let inner = |cell: &str| cell.split('>').skip(1).map(|text| text.split('<').next().unwrap_or_default()).collect();
     line.split("<t").skip(1).map(inner).collect()
 }
 
