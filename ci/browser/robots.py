@@ -18,6 +18,9 @@ def robots(page: Browser, folder: pathlib.Path) -> Checks:
     if has(page, ".robots figure.robot"):
         yield from turning(page, "the section", ".robots figure.robot")
 
+    if not (folder / "robots").is_dir():
+        yield "a run without robots has no drawing of one", not (folder / "drawings.json").exists(), "drawings.json"
+        return
     drawn = (own for own in sorted((folder / "robots").glob("*.html")) if '<figure class="robot"' in own.read_text())
     own = next(drawn, folder / "robots" / "none-is-drawn.html")
     page.open(own.resolve().as_uri())

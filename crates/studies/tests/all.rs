@@ -18,6 +18,7 @@ mod repeatability;
 mod reproductions;
 mod scaling;
 mod sections;
+mod singular;
 mod steps;
 mod support;
 mod timing;
