@@ -25,7 +25,7 @@ pub fn markup(overview: &Overview, rows: &[Row]) -> Markup {
             @if matrices.is_empty() {
                 p.empty { "This run holds no rows that compare two engines." }
             } @else {
-                div.matrices { @for (quantity, largest) in &matrices { (matrix(overview, quantity, largest)) } }
+                div.matrices { @for (quantity, largest) in &matrices { div.scroll { (matrix(overview, quantity, largest)) } } }
                 p.note { "Stronger colour is larger. An empty cell was not compared. Click a number to see the rows of the robot on which it arose." }
             }
         }
