@@ -91,6 +91,25 @@ fn ratios_have_intervals_a_mean_and_a_least() {
     assert!(!none.index.contains("<section id=\"speed\"") && !none.index.contains("href=\"#speed\""));
 }
 
+/// The quantity that most stand side by side in is drawn first, whatever the order of the list.
+#[test]
+fn the_section_opens_where_most_are_compared() {
+    let row = |engine: &str, quantity: &str| {
+        let row = Row { study: "timing".into(), engine: engine.into(), robot: "arm".into(), cache: "stream".into(), ..Row::default() };
+        Row { method: "usual".into(), quantity: quantity.into(), metric: "ratio".into(), nv: Some(7), ..row }.informed(2.0)
+    };
+    let opens = |rows: &[Row]| {
+        let written = report(&RunInfo::default(), rows);
+        let list = written.section("speed").split("id=\"speed-quantity\"").nth(1).unwrap().split("</select>").next().unwrap().to_owned();
+        let chosen = list.split("<option ").find(|option| option.contains("selected")).unwrap();
+        chosen.split('"').nth(1).unwrap().to_owned()
+    };
+    let rows = [row("drake", "bias"), row("drake", "fd"), row("dart", "fd"), row("drake", "id"), row("dart", "id")];
+    assert_eq!(opens(&rows), "id", "the first of two");
+    assert_eq!(opens(&rows[..3]), "fd");
+    assert_eq!(opens(&rows[..2]), "bias");
+}
+
 /// The geometric mean and the least of each of our methods beside the best other, with the robots that do not count.
 #[test]
 fn ours_stand_beside_the_best_other() {

@@ -1,6 +1,6 @@
 //! Drawings of the sections: time against size, ratios of times, and time against true error.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use featherbench_report::choices::{Choices, List};
 use featherbench_report::figure::{Axis, Line, Plot, Point, Rows, Series, Style};
@@ -141,7 +141,13 @@ pub fn ratios(overview: &Overview, speed: &Speed) -> (Markup, Vec<Part>) {
             options: cases.iter().map(|(case, words)| ((*case).to_owned(), words.clone())).collect(),
         },
     ];
-    let opening = speed.quantities.first().map(|[quantity, _]| [*quantity, cases[0].0].map(str::to_owned).into()).unwrap_or_default();
+    // The quantity of which most candidates are drawn; the first of several.
+    let candidates = |quantity: &str| {
+        let own = speed.ratios.iter().filter(|ratio| ratio.quantity == quantity);
+        own.map(|ratio| (ratio.engine, ratio.method, ratio.precision)).collect::<BTreeSet<_>>().len()
+    };
+    let opening = speed.quantities.iter().rev().max_by_key(|[quantity, _]| candidates(quantity));
+    let opening = opening.map(|[quantity, _]| [*quantity, cases[0].0].map(str::to_owned).into()).unwrap_or_default();
     Choices { name: "speed-choices", title: "Speed, side by side", lists, opening, drawings }.made()
 }
 
