@@ -125,6 +125,7 @@ impl<T: Real> Aba<T> {
     ///
     /// # Errors
     /// [`Error`] when an argument or the workspace does not fit the model, or when a joint meets no inertia; `a` then means nothing.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,
@@ -167,6 +168,7 @@ impl<T: Real> Aba<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
+    #[inline(never)]
     pub fn solve<P: Real + Lift<T>>(&mut self, model: &Model<P>, f: &[T], x: &mut [T]) -> Result<(), DimensionError> {
         let Self { links, path } = self;
         expect_workspace(model, links.len(), path.len())?;
@@ -182,7 +184,7 @@ impl<T: Real> Aba<T> {
         for (i, joint) in joints.iter().enumerate().rev() {
             let (before, rest) = links.split_at_mut(i);
             let parent = joint.parent.map(|parent| &mut before[parent]);
-            by_kind!(joint.kind, pass_force_to_parent, model, i, f, &mut rest[0], parent);
+            by_kind!(T, joint.kind, pass_force_to_parent, model, i, f, &mut rest[0], parent);
         }
 
         // outward: as in a run, with v = 0. One that succeeded has left no pivot to judge.
@@ -220,7 +222,7 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
     fn outward(&self, first: usize, links: &mut [Link<T>], path: &mut [OnPath<T>]) {
         let Self { model, q, v, .. } = *self;
         for (i, link) in (first..).zip(links) {
-            by_kind!(model.topology.joints()[i].kind, set_moving, model, i, q, v, path, link);
+            by_kind!(T, model.topology.joints()[i].kind, set_moving, model, i, q, v, path, link);
             self.subtract_wrench(i, link);
         }
     }
@@ -253,7 +255,7 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
                 Some(None) => outside.as_deref_mut(),
                 None => None,
             };
-            by_kind!(joint.kind, pass_to_parent, model, first + k, tau, &mut rest[0], parent, path, smallest);
+            by_kind!(T, joint.kind, pass_to_parent, model, first + k, tau, &mut rest[0], parent, path, smallest);
         }
     }
 
@@ -265,7 +267,7 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
         let joints = &model.topology.joints()[first..first + links.len()];
         let Some(first_dof) = joints.first().map(|joint| joint.v) else { return };
         for ((i, joint), link) in (first..).zip(joints).zip(links) {
-            by_kind!(joint.kind, accelerate, model, i, tau, &mut a[joint.v - first_dof..], link, path, smallest);
+            by_kind!(T, joint.kind, accelerate, model, i, tau, &mut a[joint.v - first_dof..], link, path, smallest);
         }
     }
 }

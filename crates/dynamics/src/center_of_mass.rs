@@ -35,6 +35,7 @@ impl<T: Real> CenterOfMass<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `q` or the workspace does not fit the model.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T]) -> Result<MassCenter<T>, DimensionError> {
         self.kinematics.place(model, q)?;
         let (mass, offset) = self.sum(model);

@@ -76,6 +76,7 @@ impl<T: Real> Crba<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], matrix: &mut TreeSparse<T>) -> Result<(), DimensionError> {
         self.recurse::<P, false>(model, q, matrix)
     }
@@ -107,7 +108,7 @@ impl<T: Real> Crba<T> {
                 let dofs = matrix.supported(joint.v + column);
                 let position = matrix.depth(dofs.start) - 1;
                 let (rows, values) = matrix.parts_mut();
-                by_kind!(kind, project, forces, dofs.start, subspace, column, &rows[dofs], position, values, 0);
+                by_kind!(T, kind, project, forces, dofs.start, subspace, column, &rows[dofs], position, values, 0);
             }
             if let Some(parent) = joint.parent {
                 // Iᶜ_p += X* Iᶜ_i X⁻¹,  F_k = X* F_k

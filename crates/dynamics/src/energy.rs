@@ -33,6 +33,7 @@ impl<T: Real> Energy<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], v: &[T]) -> Result<Energies<T>, DimensionError> {
         self.kinematics.place(model, q)?;
         self.kinematics.set_moving(model, v)?;

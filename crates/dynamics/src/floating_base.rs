@@ -233,6 +233,7 @@ impl<T: Real> FloatingBase<T> {
     ///
     /// # Errors
     /// [`Error`](enum@Error) when the matrix has another topology or is not positive definite.
+    #[inline(never)]
     pub fn run(&mut self, matrix: &TreeSparse<T>) -> Result<(), Error> {
         self.matrix.copy_from(matrix)?;
         self.ltdl.run(matrix)

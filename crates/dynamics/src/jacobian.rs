@@ -43,6 +43,7 @@ impl<T: Real> Jacobian<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `q` or the workspace does not fit the model, or when there is no such body.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], body: usize) -> Result<&[Motion<T>], DimensionError> {
         expect_bodies(model, self.bodies)?;
         expect("columns of the workspace", model.topology.nv(), self.columns.len())?;

@@ -62,6 +62,7 @@ impl<T: Real> Kinematics<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], v: &[T], a: &[T]) -> Result<(), DimensionError> {
         expect("velocity v", model.topology.nv(), v.len())?;
         expect("acceleration a", model.topology.nv(), a.len())?;
@@ -69,7 +70,7 @@ impl<T: Real> Kinematics<T> {
         for (i, joint) in model.topology.joints().iter().enumerate() {
             let (before, rest) = self.links.split_at_mut(i + 1);
             let (parent, link) = (&before[parent_link(joint)], &mut rest[0]);
-            by_kind!(joint.kind, move_body, model, i, parent, v, a, link);
+            by_kind!(T, joint.kind, move_body, model, i, parent, v, a, link);
         }
         Ok(())
     }

@@ -55,7 +55,7 @@
 //! So a chain of 10⁶ joints takes 809 MB for model, [`Aba`] and state (q, v, τ, v̇). A tree-sparse matrix has Σ d_k numbers, d_k the depth of
 //! dof k: on a chain n (n + 1) / 2, on a binary tree of 2²⁰ − 1 joints 19·2²⁰ + 1.
 //!
-//! Times in ms of one call, by `cargo bench -p featherbench-dynamics --bench scale`:
+//! Times in ms of one call, by `cargo run --release -p featherbench-dynamics --features measurements --example scale`:
 //!
 //! | chain of 10⁶ | one core | two cores | | binary tree of 2²⁰ − 1 | one core | two cores |
 //! |---|---|---|---|---|---|---|
@@ -78,6 +78,7 @@ mod derivatives;
 mod energy;
 mod error;
 mod floating_base;
+mod instances;
 pub mod integrate;
 mod jacobian;
 mod kinematics;
@@ -94,7 +95,7 @@ mod tree_sparse;
 mod triangular;
 
 pub use aba::{Aba, ParallelAba, Twisted, forward_dynamics};
-pub use batch::{Batch, BatchError, Cause, Element, Failure, NoSuchWidth, Number, Width, to_lanes, to_rows};
+pub use batch::{Batch, BatchError, Cause, Element, Failure, NoSuchWidth, Number, Sampled, Shared, Sharing, Width, to_lanes, to_rows};
 pub use bias::{Bias, bias_force};
 pub use center_of_mass::{CenterOfMass, MassCenter, center_of_mass};
 pub use crba::{Crba, ParallelCrba, mass_matrix};
@@ -107,6 +108,8 @@ pub use derivatives::{
 pub use energy::{Energies, Energy, energy};
 pub use error::{DimensionError, Error, NotPositiveDefinite};
 pub use floating_base::{BaseBlocks, FloatingBase, NoFloatingBase, PartitionError};
+#[doc(hidden)]
+pub use instances::instances;
 pub use jacobian::{Jacobian, jacobian};
 pub use kinematics::{BodyMotion, Kinematics, forward_kinematics};
 pub use ltdl::{Ltdl, ParallelLtdl};

@@ -120,6 +120,7 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`Error`] when the matrix has another topology or a pivot is not positive.
+    #[inline(never)]
     pub fn run(&mut self, matrix: &TreeSparse<T>) -> Result<(), Error> {
         self.matrix.copy_from(matrix)?;
         self.factor()?;
@@ -140,6 +141,7 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`NotPositiveDefinite`] when a pivot is not positive.
+    #[inline(never)]
     pub fn factor(&mut self) -> Result<(), NotPositiveDefinite> {
         let smallest = match Blocked::find() {
             Some(blocked) => (blocked.factor)(&mut self.matrix, &self.plan, &mut self.scratch),
@@ -177,6 +179,7 @@ impl<T: Real> Ltdl<T> {
     /// assert!(x.iter().all(|x| (x - 1.0).abs() < 1e-15));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
+    #[inline(never)]
     pub fn solve(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("right-hand side x", self.matrix.size(), x.len())?;
         match Blocked::find() {
@@ -205,6 +208,7 @@ impl<T: Real> Ltdl<T> {
     /// assert!(inverse.iter().zip([8.0, -4.0, -4.0, 5.0]).all(|(x, due)| (24.0 * x - due).abs() < 1e-14));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
+    #[inline(never)]
     pub fn inverse(&self, inverse: &mut [T]) -> Result<(), DimensionError> {
         expect("inverse of the mass matrix", self.matrix.size() * self.matrix.size(), inverse.len())?;
         match Blocked::find() {
@@ -263,6 +267,7 @@ impl<T: Real> Ltdl<T> {
     /// assert!((x[20] * (1.0 / inverse.get(20, 20)) - 1.0).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
+    #[inline(never)]
     pub fn selected_inverse(&mut self, inverse: &mut TreeSparse<T>) -> Result<(), DimensionError> {
         self.matrix.expect_same_tree(inverse)?;
         match Blocked::find() {

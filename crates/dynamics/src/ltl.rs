@@ -71,6 +71,7 @@ impl<T: Real> Ltl<T> {
     /// assert_eq!(ltl.factors().get(1, 0), 1.0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
+    #[inline(never)]
     pub fn run(&mut self, matrix: &TreeSparse<T>) -> Result<(), Error> {
         self.matrix.copy_from(matrix)?;
         self.factor()?;

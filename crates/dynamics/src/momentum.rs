@@ -35,6 +35,7 @@ impl<T: Real> Momentum<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], v: &[T]) -> Result<CentroidalMomentum<T>, DimensionError> {
         let Self { center, sums } = self;
         center.kinematics.place(model, q)?;

@@ -121,6 +121,7 @@ impl<R: Real + Lift<T>, T: Real + Lift<R>> Refined<R, T> {
     /// # Errors
     /// [`Error`] when an argument or the workspace does not fit the model, or when a joint meets no inertia; `a` is not valid then, except
     /// in lanes whose joints meet inertia.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T> + Lift<R>>(
         &mut self,
         model: &Model<P>,

@@ -59,6 +59,7 @@ impl<T: Real> Rnea<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,
@@ -93,7 +94,7 @@ impl<T: Real> Rnea<T> {
         // outward: v_i = X v_p + S q̇,  a_i = X a_p + S q̈ + c,  f_i = I a_i + v_i ×* I v_i − f_ext
         for (i, joint) in joints.iter().enumerate() {
             let link = &mut links[i];
-            by_kind!(joint.kind, outward::<T, P, ACCELERATED>, model, i, q, v, a, path, link);
+            by_kind!(T, joint.kind, outward::<T, P, ACCELERATED>, model, i, q, v, a, path, link);
             if let Some(wrenches) = wrenches {
                 link.f -= model.labels[i].force_to_compiled(wrenches[i]);
             }
@@ -102,7 +103,7 @@ impl<T: Real> Rnea<T> {
         // inward: τ_i = Sᵀ f_i,  f_p += X* f_i
         let mut passed = None;
         for (i, joint) in joints.iter().enumerate().rev() {
-            by_kind!(joint.kind, inward, model, i, links, tau, &mut passed);
+            by_kind!(T, joint.kind, inward, model, i, links, tau, &mut passed);
         }
         if ACCELERATED {
             // τ_k += armature_k q̈_k

@@ -4,8 +4,8 @@ use crate::common;
 
 use common::{ROBOTS, Recipe, build, dyadic_chain, robot, within};
 use featherbench_dynamics::{
-    Aba, Batch, BatchError, Bias, Cause, Crba, DimensionError, Failure, Ltdl, NotPositiveDefinite, Number, Refined, Rnea, forward_dynamics,
-    refined_forward_dynamics, to_lanes, to_rows,
+    Aba, Batch, BatchError, Bias, Cause, Crba, DimensionError, Failure, Ltdl, NotPositiveDefinite, Number, Refined, Rnea, Sampled, Sharing,
+    forward_dynamics, refined_forward_dynamics, to_lanes, to_rows,
 };
 use featherbench_model::{JointKind, Model};
 use featherbench_robots::StateBatch;
@@ -65,7 +65,7 @@ type Outcome<S> = Vec<(&'static str, Result<(), BatchError>, Vec<S>)>;
 /// A call of a batch, which writes to this array.
 type Call<'a, E> = dyn FnMut(&mut [E]) -> Result<(), BatchError> + 'a;
 
-fn in_rows<S: Number>(batch: &mut Batch<'_, S>, model: &Model<S>, states: &States<S>) -> Outcome<S> {
+fn in_rows<S: Number, M: Sharing>(batch: &mut Batch<'_, S, M>, model: &Model<S>, states: &States<S>) -> Outcome<S> {
     let States { q, v, a, tau, wrenches } = states;
     let f = Some(&wrenches[..]);
     let t = &model.topology;
@@ -90,7 +90,7 @@ fn in_rows<S: Number>(batch: &mut Batch<'_, S>, model: &Model<S>, states: &State
 }
 
 /// The same through arrays in lane order.
-fn in_lanes<S: Number>(batch: &mut Batch<'_, S>, model: &Model<S>, states: &States<S>) -> Outcome<S> {
+fn in_lanes<S: Number, M: Sharing>(batch: &mut Batch<'_, S, M>, model: &Model<S>, states: &States<S>) -> Outcome<S> {
     let t = &model.topology;
     let count = states.v.len() / t.nv();
     let lanes = |rows: &[S], each| to_lanes(rows, each).unwrap();
@@ -433,7 +433,7 @@ fn arrays_of_the_wrong_length_are_named() {
     broken.armature.pop();
     assert_eq!(refusal(Batch::<f64>::new(&broken).bias_force(q, v, None, &mut out)), ("armature of the model", nv, nv - 1));
     let samples = [model.clone(), build(&ROBOTS[6].1)];
-    assert_eq!(Batch::<f64>::of_samples(&[]).unwrap_err().what, "samples of the model");
+    assert_eq!(Batch::<f64, Sampled>::of_samples(&[]).unwrap_err().what, "samples of the model");
     assert_eq!(Batch::of_samples(&samples).unwrap_err().what, "bodies of the workspace");
     let samples = vec![model.clone(); count + 1];
     let done = Batch::of_samples(&samples).unwrap().bias_force(q, v, None, &mut out);

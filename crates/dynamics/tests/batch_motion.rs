@@ -3,7 +3,9 @@
 use crate::common;
 
 use common::{ROBOTS, build, distance, largest, robot, within};
-use featherbench_dynamics::{Batch, BatchError, Number, centroidal_momentum, forward_kinematics, jacobian, mass_matrix, to_lanes, to_rows};
+use featherbench_dynamics::{
+    Batch, BatchError, Number, Sharing, centroidal_momentum, forward_kinematics, jacobian, mass_matrix, to_lanes, to_rows,
+};
 use featherbench_model::Model;
 use featherbench_robots::StateBatch;
 
@@ -42,7 +44,7 @@ fn one_by_one<'m>(model: impl Fn(usize) -> &'m Model<f64>, states: &StateBatch) 
 }
 
 /// All four by a batch, in row order.
-fn batched<S: Number>(batch: &mut Batch<'_, S>, body: usize, states: [&[S]; 3], like: &[Vec<f64>; 4]) -> [Vec<S>; 4] {
+fn batched<S: Number, M: Sharing>(batch: &mut Batch<'_, S, M>, body: usize, states: [&[S]; 3], like: &[Vec<f64>; 4]) -> [Vec<S>; 4] {
     let [q, v, a] = states;
     let mut found = like.each_ref().map(|numbers| vec![S::from_f64(f64::NAN); numbers.len()]);
     batch.kinematics(q, v, a, &mut found[0]).unwrap();

@@ -2,12 +2,12 @@
 //!
 //! A build for the processor at hand has one width. `ci/nightly` builds these tests for plain x86-64, which has the others too.
 
-mod common;
+use crate::common;
 
 use common::{ROBOTS, build, dyadic_chain, fused::Fused, robot, within};
 use featherbench_dynamics::{
-    Aba, Batch, BatchError, Bias, Cause, Crba, Element, Failure, Ltdl, NoSuchWidth, NotPositiveDefinite, Number, Rnea, Width, to_lanes,
-    to_rows,
+    Aba, Batch, BatchError, Bias, Cause, Crba, Element, Failure, Ltdl, NoSuchWidth, NotPositiveDefinite, Number, Rnea, Sharing, Width,
+    to_lanes, to_rows,
 };
 use featherbench_model::{JointKind, Model};
 use featherbench_robots::StateBatch;
@@ -66,7 +66,7 @@ fn sizes<P>(model: &Model<P>) -> [usize; 6] {
 /// What each call returned, and the results.
 type Outcome<E> = Vec<(Result<(), BatchError>, Vec<E>)>;
 
-fn answers<S: Number, E: Element<S> + Real>(batch: &mut Batch<'_, S>, states: &States<E>, sizes: [usize; 6]) -> Outcome<E> {
+fn answers<S: Number, M: Sharing, E: Element<S> + Real>(batch: &mut Batch<'_, S, M>, states: &States<E>, sizes: [usize; 6]) -> Outcome<E> {
     let States { q, v, a, tau, wrenches } = states;
     let (f, mut out) = (Some(&wrenches[..]), sizes.map(|each| vec![E::zero(); v.len() / sizes[0] * each]));
     let [id, bias, fd, matrix, factors, solution] = &mut out;
@@ -82,7 +82,7 @@ fn answers<S: Number, E: Element<S> + Real>(batch: &mut Batch<'_, S>, states: &S
 }
 
 /// The same through arrays in lane order, with the results in row order.
-fn answers_in_lanes<S: Number>(batch: &mut Batch<'_, S>, model: &Model<S>, states: &States<S>) -> Outcome<S> {
+fn answers_in_lanes<S: Number, M: Sharing>(batch: &mut Batch<'_, S, M>, model: &Model<S>, states: &States<S>) -> Outcome<S> {
     let count = states.v.len() / model.topology.nv();
     let outcome = answers(batch, &states.in_lanes(model), sizes(model));
     let in_rows = |((done, lanes), each): ((_, Vec<_>), _)| (done, to_rows(&lanes, each, count).unwrap());

@@ -49,6 +49,7 @@ impl<P: Real> Model<P> {
     ///
     /// # Errors
     /// [`Malformed`] when the description is no tree of bodies with finite, meaningful numbers, or has bodies that deform.
+    #[inline(never)]
     pub fn build(description: &Description) -> Result<Self, Malformed> {
         description.must_be_rigid()?;
         let canonical = description.with_canonical_bodies()?;

@@ -13,6 +13,7 @@ mod exponential;
 mod inertia;
 mod linear;
 mod order;
+pub mod peak;
 mod scalar;
 mod transform;
 mod vector;

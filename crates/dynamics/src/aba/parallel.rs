@@ -70,6 +70,7 @@ impl<T: Real> ParallelAba<T> {
     ///
     /// # Errors
     /// [`Error`] when an argument or the workspace does not fit the model, or when a joint meets no inertia; `a` then means nothing.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,

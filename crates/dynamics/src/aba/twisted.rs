@@ -134,6 +134,7 @@ impl<T: Real> Twisted<T> {
     ///
     /// # Errors
     /// [`Error`] when an argument or the workspace does not fit the model, or when a joint meets no inertia; `a` then means nothing.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,
@@ -226,7 +227,7 @@ impl<P: Real + Lift<T>, T: Real> Side<'_, P, T> {
         let (mut parent_omega, mut parent_com) = (Vec3::zero(), Vec3::zero());
         for (i, body) in base.iter_mut().enumerate() {
             let kind = model.topology.joints()[i].kind;
-            by_kind!(kind, move_braced, model, i, parent_omega, parent_com, q, v, body);
+            by_kind!(T, kind, move_braced, model, i, parent_omega, parent_com, q, v, body);
             if let Some(wrenches) = wrenches {
                 let wrench = model.labels[i].force_to_compiled(wrenches[i]);
                 body.p -= Force::new(wrench.ang - body.inertia.com.cross(wrench.lin), wrench.lin);
@@ -239,7 +240,7 @@ impl<P: Real + Lift<T>, T: Real> Side<'_, P, T> {
     fn place_tip(&self, tip: &mut [Link<T>]) {
         for (link, i) in tip.iter_mut().zip(self.cut..) {
             let Inputs { model, q, .. } = self.inputs;
-            let _ = by_kind!(model.topology.joints()[i].kind, place, model, i, q, link);
+            let _ = by_kind!(T, model.topology.joints()[i].kind, place, model, i, q, link);
         }
     }
 
@@ -269,7 +270,7 @@ impl<P: Real + Lift<T>, T: Real> Side<'_, P, T> {
         for (i, link) in (self.cut..).zip(&mut *tip) {
             let kind = model.topology.joints()[i].kind;
             let x = kind.recall(&model.placements[i], &link.x);
-            by_kind!(kind, set_velocity, model, i, &x, v, path, link);
+            by_kind!(T, kind, set_velocity, model, i, &x, v, path, link);
             self.inputs.subtract_wrench(i, link);
         }
         // If body m is the last, nothing is added to it.

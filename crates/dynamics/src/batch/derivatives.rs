@@ -4,6 +4,7 @@
 
 use super::kernels::{Kernel, Parameter, Workspace};
 use super::run::Array;
+use super::samples::{Models, Sharing};
 use super::{Batch, BatchError, Element, Number};
 use crate::{Coriolis, Error, FdDerivatives, IdDerivatives, IdPartials, PARAMETERS, Regressor, RegressorMatrix, TreePair};
 use featherbench_model::Model;
@@ -34,7 +35,7 @@ impl<T: Real> Derivatives<T> {
     }
 }
 
-impl<S: Number> Batch<'_, S> {
+impl<S: Number, M: Sharing> Batch<'_, S, M> {
     /// Derivatives of inverse dynamics at configurations `q`, velocities `v`, accelerations `a` and external wrenches:
     /// [`IdDerivatives`](crate::IdDerivatives) for each state.
     ///

@@ -32,13 +32,14 @@ mod width;
 
 pub use error::{BatchError, Cause, Failure};
 pub use lanes::{Element, Number, to_lanes, to_rows};
+pub use samples::{Sampled, Shared, Sharing};
 pub use width::{NoSuchWidth, Width};
 
 use crate::DimensionError;
 use featherbench_model::Model;
 use kernels::{BiasForce, Factors, ForwardDynamics, Inlined, InverseDynamics, Kernel, MassMatrix, RefinedForwardDynamics, Solution};
 use run::{Array, AsBuilt, AtItsWidth, Inputs, WRENCH, Workers};
-use samples::Models;
+use samples::{Models, One, Samples};
 use std::borrow::Cow;
 use width::Selected;
 
@@ -122,34 +123,38 @@ use width::Selected;
 /// *How*: a register of a selected width is a type over the processor's vectors. A kernel is a part of one function with that width's
 /// instructions, and all that it calls is marked to be always inlined. In a debug build it is not, and a selected width is slow there.
 #[derive(Clone, Debug)]
-pub struct Batch<'m, S: Number = f64> {
-    models: Models<'m, S>,
+pub struct Batch<'m, S: Number = f64, M: Sharing = Shared> {
+    models: M::Models<'m, S>,
     cores: usize,
     /// Of the width of the build. A batch of another width has them from its first call of a kernel that needs them on.
     as_built: Option<Workers<S::Lanes>>,
     selected: Selected<S>,
 }
 
-impl<'m, S: Number> Batch<'m, S> {
+impl<'m, S: Number> Batch<'m, S, Shared> {
     /// States of one model, on one core, at the widest width. The precision `S` is that of the model: [`Model::lift`] makes a `Model<f32>`.
     pub fn new(model: &'m Model<S>) -> Self {
-        Self::of(Models::One(Cow::Borrowed(model)))
+        Self::of(One(Cow::Borrowed(model)))
     }
 
     /// The same of a model that the batch keeps.
     pub fn of_model(model: Model<S>) -> Self {
-        Self::of(Models::One(Cow::Owned(model)))
+        Self::of(One(Cow::Owned(model)))
     }
+}
 
+impl<'m, S: Number> Batch<'m, S, Sampled> {
     /// States of which each has a model of its own: state k is one of `samples[k]`. All have one topology. On one core.
     ///
     /// # Errors
     /// [`DimensionError`] when there is no sample, or the samples have not one topology.
     pub fn of_samples(samples: &'m [Model<S>]) -> Result<Self, DimensionError> {
-        Ok(Self::of(Models::of_samples(samples)?))
+        Ok(Self::of(Samples::new(samples)?))
     }
+}
 
-    fn of(models: Models<'m, S>) -> Self {
+impl<'m, S: Number, M: Sharing> Batch<'m, S, M> {
+    fn of(models: M::Models<'m, S>) -> Self {
         let mut batch = Self { models, cores: 1, as_built: None, selected: Selected::AsBuilt };
         // Without the widest width, which is there, the batch would have that of the build.
         batch.selected = Selected::new(Width::widest(), &batch.models, 1).unwrap_or(Selected::AsBuilt);
@@ -334,7 +339,7 @@ impl<'m, S: Number> Batch<'m, S> {
     }
 
     /// The models, and the workers of the width of the build.
-    fn workers_as_built(&mut self) -> (&Models<'m, S>, &mut Workers<S::Lanes>) {
+    fn workers_as_built(&mut self) -> (&M::Models<'m, S>, &mut Workers<S::Lanes>) {
         let Self { models, cores, as_built, .. } = self;
         let workers = as_built.get_or_insert_with(|| Workers::new(models, *cores));
         (models, workers)

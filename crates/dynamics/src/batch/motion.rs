@@ -3,6 +3,7 @@
 
 use super::kernels::{Kernel, Parameter, Workspace};
 use super::run::Array;
+use super::samples::{Models, Sharing};
 use super::{Batch, BatchError, Element, Number};
 use crate::error::expect;
 use crate::{Crba, Error, Jacobian, Kinematics, Ltdl, Momentum};
@@ -32,7 +33,7 @@ impl<T: Real> Motions<T> {
     }
 }
 
-impl<S: Number> Batch<'_, S> {
+impl<S: Number, M: Sharing> Batch<'_, S, M> {
     /// Placement, velocity and acceleration of every described body at configurations `q`, velocities `v` and accelerations `a`:
     /// [`Kinematics`] for each state.
     ///

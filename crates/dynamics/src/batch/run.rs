@@ -41,7 +41,7 @@ pub(super) struct Workers<L> {
 
 impl<L: Real> Workers<L> {
     /// For so many cores.
-    pub(super) fn new<S: Number>(models: &Models<'_, S>, cores: usize) -> Self
+    pub(super) fn new<S: Number>(models: &impl Models<S>, cores: usize) -> Self
     where
         L: Register<S>,
     {
@@ -49,13 +49,18 @@ impl<L: Real> Workers<L> {
         let bodies = topology.bodies();
         let inputs = vec![L::zero(); topology.nq() + 2 * topology.nv() + WRENCH * bodies];
         let worker = Worker { workspace: Workspace::new(topology), inputs, wrenches: vec![Force::zero(); bodies] };
-        Self { workers: vec![worker; cores], packed: models.pack() }
+        let mut workers = Self { workers: vec![worker], packed: models.pack() };
+        workers.resize(cores);
+        workers
     }
 
     /// Changes the number of cores.
     pub(super) fn resize(&mut self, cores: usize) {
-        let worker = self.workers[0].clone();
-        self.workers.resize(cores, worker);
+        self.workers.truncate(cores);
+        while self.workers.len() < cores {
+            let worker = self.workers[0].clone();
+            self.workers.push(worker);
+        }
     }
 
     /// Refines in so many steps from now on.
@@ -74,7 +79,7 @@ impl<L: Real> Workers<L> {
 }
 
 /// A kernel on registers `L`, for states that have one model and for states each of which has its own.
-pub(super) trait RunsOn<S, L, const N: usize> {
+pub trait RunsOn<S, L, const N: usize> {
     fn run<'w>(
         workspace: &'w mut Workspace<L>,
         model: &Model<S>,
@@ -156,7 +161,7 @@ impl<A> Array<A> {
 
 /// What a kernel of `N` vectors is given.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Inputs<A, const N: usize> {
+pub struct Inputs<A, const N: usize> {
     pub(super) vectors: [A; N],
     /// External wrenches: [`WRENCH`] numbers per body.
     pub(super) wrenches: Option<A>,
@@ -186,7 +191,7 @@ impl<L: Real> Workers<L> {
     /// Runs a kernel on every state.
     pub(super) fn run<S: Number, K: RunsOn<S, L, N>, E: Element<S>, const N: usize>(
         &mut self,
-        models: &Models<'_, S>,
+        models: &impl Models<S>,
         inputs: Inputs<Array<&[E]>, N>,
         output: Array<&mut [E]>,
     ) -> Result<(), BatchError>
@@ -207,29 +212,39 @@ impl<L: Real> Workers<L> {
                 let next = parts.lock().unwrap_or_else(PoisonError::into_inner).next();
                 let Some((index, results)) = next else { return Ok(failures) };
                 for (k, results) in results.chunks_mut(group_len).enumerate() {
-                    job.run_group::<K>(worker, index * part + k, results, &mut failures)?;
+                    job.run_group::<S, K>(worker, index * part + k, results, &mut failures)?;
                 }
             }
         };
 
-        let mut failures = match &mut workers[..] {
+        let failures = match &mut workers[..] {
             [worker] => work(worker)?,
-            workers => {
-                let join = |mut a: Vec<Failure>, mut b| {
-                    a.append(&mut b);
-                    Ok(a)
-                };
-                workers.par_iter_mut().map(work).try_reduce(Vec::new, join)?
-            }
+            workers => side_by_side(workers, &work)?,
         };
-        failures.sort_unstable_by_key(|failure| failure.state);
-        if failures.is_empty() { Ok(()) } else { Err(BatchError::Failed { failures, states }) }
+        if failures.is_empty() { Ok(()) } else { Err(BatchError::Failed { failures: in_order(failures), states }) }
     }
+}
+
+/// What a worker does: groups, until none is left. The states that fail come back.
+type Work<'a, L> = dyn Fn(&mut Worker<L>) -> Result<Vec<Failure>, DimensionError> + Sync + 'a;
+
+/// Some work of all workers at once. It is compiled once for all kernels.
+fn side_by_side<L: Real>(workers: &mut [Worker<L>], work: &Work<'_, L>) -> Result<Vec<Failure>, DimensionError> {
+    let join = |mut a: Vec<Failure>, mut b| {
+        a.append(&mut b);
+        Ok(a)
+    };
+    workers.par_iter_mut().map(work).try_reduce(Vec::new, join)
+}
+
+fn in_order(mut failures: Vec<Failure>) -> Vec<Failure> {
+    failures.sort_unstable_by_key(|failure| failure.state);
+    failures
 }
 
 /// The number of states. Each array has one vector for each.
 fn count<S: Number, E: Element<S>, const N: usize>(
-    models: &Models<'_, S>,
+    models: &impl Models<S>,
     inputs: &Inputs<Array<&[E]>, N>,
     output: &Array<&mut [E]>,
 ) -> Result<usize, DimensionError> {
@@ -246,8 +261,8 @@ fn count<S: Number, E: Element<S>, const N: usize>(
 }
 
 /// A run of a kernel on many states.
-struct Job<'a, S: Number, L, E, const N: usize> {
-    models: &'a Models<'a, S>,
+struct Job<'a, M, L, E, const N: usize> {
+    models: &'a M,
     /// The models in lanes, if each state has its own.
     packed: &'a [Model<L>],
     inputs: Inputs<Array<&'a [E]>, N>,
@@ -256,15 +271,20 @@ struct Job<'a, S: Number, L, E, const N: usize> {
     states: usize,
 }
 
-impl<S: Number, L: Register<S>, E: Element<S>, const N: usize> Job<'_, S, L, E, N> {
+impl<M, L, E, const N: usize> Job<'_, M, L, E, N> {
     /// Runs the kernel on one group.
-    fn run_group<K: RunsOn<S, L, N>>(
+    fn run_group<S: Number, K: RunsOn<S, L, N>>(
         &self,
         worker: &mut Worker<L>,
         group: usize,
         results: &mut [E],
         failures: &mut Vec<Failure>,
-    ) -> Result<(), DimensionError> {
+    ) -> Result<(), DimensionError>
+    where
+        M: Models<S>,
+        L: Register<S>,
+        E: Element<S>,
+    {
         let Worker { workspace, inputs, wrenches } = worker;
         let inputs = L::with_instructions(|| {
             let mut rest = &mut inputs[..];
@@ -280,7 +300,7 @@ impl<S: Number, L: Register<S>, E: Element<S>, const N: usize> Job<'_, S, L, E, 
         }
         L::with_instructions(|| E::store(found, results));
         if done.is_err() || !inputs.iter().all(|input| L::are_finite(input)) || !L::are_finite(found) {
-            self.examine::<K>(workspace, wrenches, group, inputs, results, failures);
+            self.examine::<S, K>(workspace, wrenches, group, inputs, results, failures);
         }
         Ok(())
     }
@@ -288,7 +308,7 @@ impl<S: Number, L: Register<S>, E: Element<S>, const N: usize> Job<'_, S, L, E, 
     /// Finds the states of a group that fail, each alone: as copies of itself in all lanes, so that its operations are the same.
     #[cold]
     #[inline(never)]
-    fn examine<K: RunsOn<S, L, N>>(
+    fn examine<S: Number, K: RunsOn<S, L, N>>(
         &self,
         workspace: &mut Workspace<L>,
         wrenches: &mut [Force<L>],
@@ -296,7 +316,11 @@ impl<S: Number, L: Register<S>, E: Element<S>, const N: usize> Job<'_, S, L, E, 
         inputs: Inputs<&[L], N>,
         results: &mut [E],
         failures: &mut Vec<Failure>,
-    ) {
+    ) where
+        M: Models<S>,
+        L: Register<S>,
+        E: Element<S>,
+    {
         let first = group * L::LANES;
         for state in first..(first + L::LANES).min(self.states) {
             let lane = state - first;

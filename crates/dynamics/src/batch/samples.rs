@@ -11,16 +11,120 @@ use featherbench_model::{Axis, Label, Model, Topology};
 use featherbench_spatial::{Force, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::array::from_fn;
 use std::borrow::Cow;
+use std::fmt::Debug;
 
-#[derive(Clone, Debug)]
-pub(super) enum Models<'m, S: Number> {
-    One(Cow<'m, Model<S>>),
-    /// One model for each state. There is at least one.
-    Each(Samples<'m, S>),
+/// The models of the states of a batch: one for all, or one for each. It is a type, so that a program compiles the kernels of those it has.
+pub trait Sharing: Clone + Debug {
+    /// The models, with parameters in `S`.
+    type Models<'m, S: Number>: Models<S>;
 }
 
+/// One model for all states.
+#[derive(Clone, Copy, Debug)]
+pub struct Shared;
+
+/// One model for each state.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampled;
+
+impl Sharing for Shared {
+    type Models<'m, S: Number> = One<'m, S>;
+}
+
+impl Sharing for Sampled {
+    type Models<'m, S: Number> = Samples<'m, S>;
+}
+
+/// What a batch asks of its models.
+pub trait Models<S: Number>: Clone + Debug + Sync {
+    /// The models in lanes, group by group, if each state has its own.
+    fn pack<L: Register<S>>(&self) -> Vec<Model<L>>;
+
+    /// The topology of all.
+    fn topology(&self) -> &Topology;
+
+    /// How many states have a model, if each has its own.
+    fn count(&self) -> Option<usize>;
+
+    /// The compiled body of each described body.
+    fn described(&self) -> &[usize];
+
+    /// An error unless the axes of each body have the same names in all samples: what is in described axes can then be computed in lanes.
+    fn expect_same_labels(&self) -> Result<(), DimensionError>;
+
+    /// Runs a kernel on a group. External wrenches are kept in `wrenches`.
+    fn run<'w, K: RunsOn<S, L, N>, L: Register<S>, const N: usize>(
+        &self,
+        packed: &[Model<L>],
+        group: usize,
+        workspace: &'w mut Workspace<L>,
+        inputs: Inputs<&[L], N>,
+        wrenches: &mut [Force<L>],
+    ) -> (&'w [L], Result<(), Error>);
+
+    /// Runs a kernel on copies of one state.
+    fn run_copies<'w, K: RunsOn<S, L, N>, L: Register<S>, const N: usize>(
+        &self,
+        state: usize,
+        workspace: &'w mut Workspace<L>,
+        inputs: Inputs<&[L], N>,
+        wrenches: &mut [Force<L>],
+    ) -> (&'w [L], Result<(), Error>);
+}
+
+/// The model of all states.
 #[derive(Clone, Debug)]
-pub(super) struct Samples<'m, S: Number> {
+pub struct One<'m, S: Number>(pub(super) Cow<'m, Model<S>>);
+
+impl<S: Number> Models<S> for One<'_, S> {
+    fn pack<L: Register<S>>(&self) -> Vec<Model<L>> {
+        Vec::new()
+    }
+
+    fn topology(&self) -> &Topology {
+        &self.0.topology
+    }
+
+    fn count(&self) -> Option<usize> {
+        None
+    }
+
+    fn described(&self) -> &[usize] {
+        &self.0.described
+    }
+
+    fn expect_same_labels(&self) -> Result<(), DimensionError> {
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn run<'w, K: RunsOn<S, L, N>, L: Register<S>, const N: usize>(
+        &self,
+        _packed: &[Model<L>],
+        group: usize,
+        workspace: &'w mut Workspace<L>,
+        inputs: Inputs<&[L], N>,
+        wrenches: &mut [Force<L>],
+    ) -> (&'w [L], Result<(), Error>) {
+        self.run_copies::<K, L, N>(group, workspace, inputs, wrenches)
+    }
+
+    #[inline(always)]
+    fn run_copies<'w, K: RunsOn<S, L, N>, L: Register<S>, const N: usize>(
+        &self,
+        _state: usize,
+        workspace: &'w mut Workspace<L>,
+        inputs: Inputs<&[L], N>,
+        wrenches: &mut [Force<L>],
+    ) -> (&'w [L], Result<(), Error>) {
+        let external = inputs.wrenches.map(|numbers| forces(numbers, wrenches));
+        K::run(workspace, &self.0, inputs.vectors, external.as_deref())
+    }
+}
+
+/// One model for each state. There is at least one.
+#[derive(Clone, Debug)]
+pub struct Samples<'m, S: Number> {
     samples: &'m [Model<S>],
     /// The topology of all: an axis is along z where it is in all samples.
     topology: Topology,
@@ -30,9 +134,9 @@ pub(super) struct Samples<'m, S: Number> {
     same_label: Vec<bool>,
 }
 
-impl<'m, S: Number> Models<'m, S> {
+impl<'m, S: Number> Samples<'m, S> {
     /// One model for each state. An axis is along z in all samples, or is taken as a skew one in all.
-    pub(super) fn of_samples(samples: &'m [Model<S>]) -> Result<Self, DimensionError> {
+    pub(super) fn new(samples: &'m [Model<S>]) -> Result<Self, DimensionError> {
         let Some(first) = samples.first() else {
             return Err(DimensionError { what: "samples of the model", expected: 1, found: 0 });
         };
@@ -47,101 +151,12 @@ impl<'m, S: Number> Models<'m, S> {
         let topology = first.topology.with_skew_axes(|i| samples.iter().any(|sample| kind(i, sample) != kind(i, first)));
         let same_label: Vec<bool> = (0..bodies).map(|i| samples.iter().all(|sample| sample.labels[i] == first.labels[i])).collect();
         let labels: Vec<Label> = same_label.iter().zip(&first.labels).map(|(same, label)| if *same { *label } else { Label::Z }).collect();
-        Ok(Self::Each(Samples { samples, topology, labels, same_label }))
+        Ok(Self { samples, topology, labels, same_label })
     }
 
-    /// The models in lanes, group by group, if each state has its own.
-    pub(super) fn pack<L: Register<S>>(&self) -> Vec<Model<L>> {
-        match self {
-            Self::One(_) => Vec::new(),
-            Self::Each(each) => {
-                let in_lanes = |group: &[Model<S>]| each.pack(|lane| &group[lane.min(group.len() - 1)]);
-                each.samples.chunks(L::LANES).map(in_lanes).collect()
-            }
-        }
-    }
-
-    pub(super) fn topology(&self) -> &Topology {
-        match self {
-            Self::One(model) => &model.topology,
-            Self::Each(each) => &each.topology,
-        }
-    }
-
-    /// How many states have a model, if each has its own.
-    pub(super) fn count(&self) -> Option<usize> {
-        match self {
-            Self::One(_) => None,
-            Self::Each(each) => Some(each.samples.len()),
-        }
-    }
-
-    /// The compiled body of each described body.
-    pub(super) fn described(&self) -> &[usize] {
-        match self {
-            Self::One(model) => &model.described,
-            Self::Each(each) => &each.samples[0].described,
-        }
-    }
-
-    /// An error unless the axes of each body have the same names in all samples: what is in described axes can then be computed in lanes.
-    pub(super) fn expect_same_labels(&self) -> Result<(), DimensionError> {
-        match self {
-            Self::One(_) => Ok(()),
-            Self::Each(each) => {
-                let same = each.same_label.iter().filter(|same| **same).count();
-                expect("bodies whose joint axis is the same coordinate axis in all samples, or skew in all", each.same_label.len(), same)
-            }
-        }
-    }
-
-    /// Runs a kernel on a group. External wrenches are kept in `wrenches`.
-    #[inline(always)]
-    pub(super) fn run<'w, K: RunsOn<S, L, N>, L: Register<S>, const N: usize>(
-        &self,
-        packed: &[Model<L>],
-        group: usize,
-        workspace: &'w mut Workspace<L>,
-        inputs: Inputs<&[L], N>,
-        wrenches: &mut [Force<L>],
-    ) -> (&'w [L], Result<(), Error>) {
-        let external = inputs.wrenches.map(|numbers| forces(numbers, wrenches));
-        match self {
-            Self::One(model) => K::run(workspace, model, inputs.vectors, external.as_deref()),
-            Self::Each(each) => {
-                let last = each.samples.len() - 1;
-                let external = external.map(|forces| each.relabel(forces, |lane| (group * L::LANES + lane).min(last)));
-                K::run_each(workspace, &packed[group], inputs.vectors, external)
-            }
-        }
-    }
-
-    /// Runs a kernel on copies of one state.
-    pub(super) fn run_copies<'w, K: RunsOn<S, L, N>, L: Register<S>, const N: usize>(
-        &self,
-        state: usize,
-        workspace: &'w mut Workspace<L>,
-        inputs: Inputs<&[L], N>,
-        wrenches: &mut [Force<L>],
-    ) -> (&'w [L], Result<(), Error>) {
-        let external = inputs.wrenches.map(|numbers| forces(numbers, wrenches));
-        match self {
-            Self::One(model) => K::run(workspace, model, inputs.vectors, external.as_deref()),
-            Self::Each(each) => {
-                let external = external.map(|forces| each.relabel(forces, |_| state));
-                K::run_each(workspace, &each.pack(|_| &each.samples[state]), inputs.vectors, external)
-            }
-        }
-    }
-}
-
-impl<S: Number> Samples<'_, S> {
     /// One model of which each lane is a sample.
-    fn pack<'a, L: Register<S>>(&self, sample: impl Fn(usize) -> &'a Model<S>) -> Model<L>
-    where
-        S: 'a,
-    {
-        pack(&self.topology, &self.labels, sample)
+    fn together<L: Register<S>>(&self, lanes: &[&Model<S>]) -> Model<L> {
+        pack(&self.topology, &self.labels, lanes)
     }
 
     /// Brings the wrenches of bodies whose label is not the same in all samples into compiled axes. Lane l is a state of sample `sample(l)`.
@@ -158,6 +173,61 @@ impl<S: Number> Samples<'_, S> {
     }
 }
 
+impl<S: Number> Models<S> for Samples<'_, S> {
+    fn pack<L: Register<S>>(&self) -> Vec<Model<L>> {
+        let in_lanes = |group: &'_ [Model<S>]| {
+            let lanes: Vec<&Model<S>> = (0..L::LANES).map(|lane| &group[lane.min(group.len() - 1)]).collect();
+            self.together(&lanes)
+        };
+        self.samples.chunks(L::LANES).map(in_lanes).collect()
+    }
+
+    fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    fn count(&self) -> Option<usize> {
+        Some(self.samples.len())
+    }
+
+    fn described(&self) -> &[usize] {
+        &self.samples[0].described
+    }
+
+    fn expect_same_labels(&self) -> Result<(), DimensionError> {
+        let same = self.same_label.iter().filter(|same| **same).count();
+        expect("bodies whose joint axis is the same coordinate axis in all samples, or skew in all", self.same_label.len(), same)
+    }
+
+    #[inline(always)]
+    fn run<'w, K: RunsOn<S, L, N>, L: Register<S>, const N: usize>(
+        &self,
+        packed: &[Model<L>],
+        group: usize,
+        workspace: &'w mut Workspace<L>,
+        inputs: Inputs<&[L], N>,
+        wrenches: &mut [Force<L>],
+    ) -> (&'w [L], Result<(), Error>) {
+        let last = self.samples.len() - 1;
+        let external = inputs.wrenches.map(|numbers| forces(numbers, wrenches));
+        let external = external.map(|forces| self.relabel(forces, |lane| (group * L::LANES + lane).min(last)));
+        K::run_each(workspace, &packed[group], inputs.vectors, external)
+    }
+
+    #[inline(always)]
+    fn run_copies<'w, K: RunsOn<S, L, N>, L: Register<S>, const N: usize>(
+        &self,
+        state: usize,
+        workspace: &'w mut Workspace<L>,
+        inputs: Inputs<&[L], N>,
+        wrenches: &mut [Force<L>],
+    ) -> (&'w [L], Result<(), Error>) {
+        let external = inputs.wrenches.map(|numbers| forces(numbers, wrenches));
+        let external = external.map(|forces| self.relabel(forces, |_| state));
+        K::run_each(workspace, &self.together(&vec![&self.samples[state]; L::LANES]), inputs.vectors, external)
+    }
+}
+
 /// The wrenches of a group, one per body, from their numbers.
 #[inline(always)]
 fn forces<'f, T: Real>(numbers: &[T], forces: &'f mut [Force<T>]) -> &'f mut [Force<T>] {
@@ -168,28 +238,28 @@ fn forces<'f, T: Real>(numbers: &[T], forces: &'f mut [Force<T>]) -> &'f mut [Fo
 }
 
 /// One model of which each lane is a model of this topology. It gets these labels.
-fn pack<'a, S: Number, L: Register<S>>(topology: &Topology, labels: &[Label], sample: impl Fn(usize) -> &'a Model<S>) -> Model<L> {
-    let mut packed = L::lift(sample(0));
+fn pack<S: Number, L: Register<S>>(topology: &Topology, labels: &[Label], lanes: &[&Model<S>]) -> Model<L> {
+    let mut packed = L::lift(lanes[0]);
     packed.topology = topology.clone();
     packed.labels.copy_from_slice(labels);
     for (i, (x, subspace)) in packed.placements.iter_mut().zip(&mut packed.subspaces).enumerate() {
         *x = Transform {
-            rotation: Mat3::from_array(together(|lane| sample(lane).placements[i].rotation.to_array())),
-            translation: vec3(|lane| sample(lane).placements[i].translation),
+            rotation: Mat3::from_array(together(|lane| lanes[lane].placements[i].rotation.to_array())),
+            translation: vec3(|lane| lanes[lane].placements[i].translation),
         };
-        *subspace = Motion { ang: vec3(|lane| sample(lane).subspaces[i].ang), lin: vec3(|lane| sample(lane).subspaces[i].lin) };
+        *subspace = Motion { ang: vec3(|lane| lanes[lane].subspaces[i].ang), lin: vec3(|lane| lanes[lane].subspaces[i].lin) };
     }
     for (i, inertia) in packed.inertias.iter_mut().enumerate() {
         *inertia = RigidBodyInertia {
-            mass: L::pack(|lane| sample(lane).inertias[i].mass),
-            first_moment: vec3(|lane| sample(lane).inertias[i].first_moment),
-            rotational: Sym3::from_array(together(|lane| sample(lane).inertias[i].rotational.to_array())),
+            mass: L::pack(|lane| lanes[lane].inertias[i].mass),
+            first_moment: vec3(|lane| lanes[lane].inertias[i].first_moment),
+            rotational: Sym3::from_array(together(|lane| lanes[lane].inertias[i].rotational.to_array())),
         };
     }
     for (k, armature) in packed.armature.iter_mut().enumerate() {
-        *armature = L::pack(|lane| sample(lane).armature[k]);
+        *armature = L::pack(|lane| lanes[lane].armature[k]);
     }
-    packed.gravity = vec3(|lane| sample(lane).gravity);
+    packed.gravity = vec3(|lane| lanes[lane].gravity);
     packed
 }
 

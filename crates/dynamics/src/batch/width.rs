@@ -82,7 +82,7 @@ pub(super) enum Selected<S: Number> {
 }
 
 impl<S: Number> Selected<S> {
-    pub(super) fn new(width: Width, models: &Models<'_, S>, cores: usize) -> Result<Self, NoSuchWidth> {
+    pub(super) fn new(width: Width, models: &impl Models<S>, cores: usize) -> Result<Self, NoSuchWidth> {
         width.check()?;
         Ok(match width {
             Width::AsBuilt => Self::AsBuilt,

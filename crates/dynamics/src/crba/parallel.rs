@@ -110,6 +110,7 @@ impl<T: Real> ParallelCrba<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], matrix: &mut TreeSparse<T>) -> Result<(), DimensionError> {
         let Self { plan, pieces, composites, placements, trunk, trunk_rows, carried, forces } = self;
         super::expect_shapes(model, composites.len(), q, matrix)?;
@@ -307,7 +308,7 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
             let skipped = if supported.own { column } else { 0 };
             let (first, rows) = (supported.first + skipped, &supported.rows[skipped..]);
             let position = self.model.topology.dof_depth(joint.v + column) - 1;
-            by_kind!(joint.kind, project, forces, first, subspace, column, rows, position, values, start);
+            by_kind!(T, joint.kind, project, forces, first, subspace, column, rows, position, values, start);
         }
     }
 }

@@ -188,19 +188,19 @@ impl<T: Real> Articulated<T> {
         for (i, joint) in joints.iter().enumerate() {
             let (before, rest) = links.split_at_mut(i);
             let parent = joint.parent.map(|parent| &before[parent]);
-            by_kind!(joint.kind, place, model, i, parent, at, &mut rest[0], rows, columns);
+            by_kind!(T, joint.kind, place, model, i, parent, at, &mut rest[0], rows, columns);
         }
         // inward: each dof is eliminated, and what remains is passed to the parent
         for (i, joint) in joints.iter().enumerate().rev() {
             let (before, rest) = links.split_at_mut(i);
             let parent = joint.parent.map(|parent| &mut before[parent]);
-            by_kind!(joint.kind, eliminate, model, i, at.tau, &mut rest[0], parent, rows, &mut smallest);
+            by_kind!(T, joint.kind, eliminate, model, i, at.tau, &mut rest[0], parent, rows, &mut smallest);
         }
         // outward: accelerations, the changes by them, and what each joint passes to its parent
         for (i, joint) in joints.iter().enumerate() {
             let (before, rest) = links.split_at_mut(i);
             let parent = joint.parent.map(|parent| &before[parent]);
-            by_kind!(joint.kind, accelerate, model, i, parent, &mut rest[0], rows, columns, a);
+            by_kind!(T, joint.kind, accelerate, model, i, parent, &mut rest[0], rows, columns, a);
         }
         Ok(smallest)
     }

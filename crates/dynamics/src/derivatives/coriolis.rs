@@ -66,12 +66,13 @@ impl<T: Real> Coriolis<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument, the workspace or `matrix` does not fit the model.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], v: &[T], matrix: &mut TreePair<T>) -> Result<(), DimensionError> {
         matrix.expect_topology(&model.topology)?;
         self.sweep.run::<P, true, false>(model, State { q, v, a: &[], wrenches: None, gravity: false })?;
         let Self { sweep, path, .. } = self;
         for (i, joint) in model.topology.joints().iter().enumerate() {
-            by_kind!(joint.kind, rows, model, i, &sweep.links[i], path, matrix);
+            by_kind!(T, joint.kind, rows, model, i, &sweep.links[i], path, matrix);
         }
         matrix.clear_padding();
         Ok(())

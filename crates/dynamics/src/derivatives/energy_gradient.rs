@@ -78,6 +78,7 @@ impl<T: Real> EnergyGradient<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument, the workspace or `gradients` does not fit the model.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,

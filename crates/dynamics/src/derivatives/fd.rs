@@ -151,6 +151,7 @@ impl<T: Real> FdDerivatives<T> {
     /// # Errors
     /// [`Error`] when an argument, the workspace or `partials` does not fit the model, or when a joint meets no inertia; `partials` then
     /// means nothing.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,

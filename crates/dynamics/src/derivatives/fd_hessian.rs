@@ -94,6 +94,7 @@ impl<T: Real> FdHessian<T> {
     /// [`Error`] when an argument, the workspace or a result does not fit the model, or when a joint meets no inertia; the results then mean
     /// nothing.
     #[expect(clippy::too_many_arguments, reason = "a state with wrenches, weights, and two results")]
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,

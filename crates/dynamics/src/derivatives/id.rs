@@ -137,6 +137,7 @@ impl<T: Real> IdDerivatives<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument, the workspace or `partials` does not fit the model.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,
@@ -152,7 +153,7 @@ impl<T: Real> IdDerivatives<T> {
         self.sweep.run::<P, true, true>(model, State { q, v, a, wrenches, gravity: true })?;
 
         for (i, joint) in model.topology.joints().iter().enumerate() {
-            by_kind!(joint.kind, rows, model, i, &self.sweep.links[i], &mut self.path, partials);
+            by_kind!(T, joint.kind, rows, model, i, &self.sweep.links[i], &mut self.path, partials);
         }
         for (k, armature) in model.armature.iter().enumerate() {
             partials.a.add_to_diagonal(k, armature.lift());

@@ -162,6 +162,7 @@ impl<T: Real> IdHessian<T> {
     /// # Errors
     /// [`DimensionError`] when an argument, the workspace or `second` does not fit the model.
     #[expect(clippy::too_many_arguments, reason = "a state with wrenches, weights, and the result")]
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,
@@ -201,7 +202,7 @@ impl<T: Real> IdHessian<T> {
             }
         }
         for (i, joint) in joints.iter().enumerate() {
-            by_kind!(joint.kind, rows, model, i, &sweep.links[i], &weighted[i], path, second);
+            by_kind!(T, joint.kind, rows, model, i, &sweep.links[i], &weighted[i], path, second);
         }
         second.qq.clear_padding();
         second.qv.clear_padding();

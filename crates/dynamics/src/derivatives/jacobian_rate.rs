@@ -78,6 +78,7 @@ impl<T: Real> JacobianRate<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `q`, `v` or the workspace does not fit the model, or when there is no such body.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,

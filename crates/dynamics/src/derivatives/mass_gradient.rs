@@ -62,12 +62,13 @@ impl<T: Real> MassGradient<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument, the workspace or `gradient` does not fit the model.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], x: &[T], gradient: &mut TreePair<T>) -> Result<(), DimensionError> {
         gradient.expect_topology(&model.topology)?;
         self.sweep.run::<P, false, true>(model, State { q, v: &[], a: x, wrenches: None, gravity: false })?;
         let Self { sweep, path } = self;
         for (i, joint) in model.topology.joints().iter().enumerate() {
-            by_kind!(joint.kind, rows, model, i, &sweep.links[i], path, gradient);
+            by_kind!(T, joint.kind, rows, model, i, &sweep.links[i], path, gradient);
         }
         gradient.clear_padding();
         Ok(())

@@ -53,6 +53,7 @@ impl<T: Real> MomentumMatrix<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], v: &[T]) -> Result<(), DimensionError> {
         self.sweep.run::<P, true, false>(model, State { q, v, a: &[], wrenches: None, gravity: false })?;
         expect("columns of the workspace", model.topology.nv(), self.columns.len())?;
@@ -87,7 +88,7 @@ impl<T: Real> MomentumMatrix<T> {
             let (c, c_rate) = (center - origin, center_rate - rate);
             for k in 0..joint.kind.nv() {
                 let column = joint.kind.column(&model.subspaces[i], k);
-                (columns[joint.v + k], rates[joint.v + k]) = by_kind!(joint.kind, column_and_rate, sweep, i, column, c, c_rate);
+                (columns[joint.v + k], rates[joint.v + k]) = by_kind!(T, joint.kind, column_and_rate, sweep, i, column, c, c_rate);
             }
         }
         Ok(())

@@ -55,6 +55,7 @@ impl<T: Real> ParameterSensitivity<T> {
     /// # Errors
     /// [`Error`] when an argument or the workspace does not fit the model, or when a joint meets no inertia.
     #[expect(clippy::too_many_arguments, reason = "a state, and two results")]
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,

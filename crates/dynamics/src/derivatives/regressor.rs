@@ -175,6 +175,7 @@ impl<T: Real> Regressor<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument, the workspace or `regressor` does not fit the model.
+    #[inline(never)]
     pub fn torque<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,
@@ -191,6 +192,7 @@ impl<T: Real> Regressor<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument, the workspace or `regressor` does not fit the model.
+    #[inline(never)]
     pub fn momentum<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,
@@ -206,6 +208,7 @@ impl<T: Real> Regressor<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
+    #[inline(never)]
     pub fn energy<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,

@@ -150,7 +150,7 @@ impl<T: Real> Sweep<T> {
         for (i, joint) in joints.iter().enumerate() {
             let (before, rest) = self.links.split_at_mut(i);
             let parent = joint.parent.map(|parent| &before[parent]);
-            by_kind!(joint.kind, outward::<T, P, MOVING, FORCED>, model, i, parent, state, &mut rest[0]);
+            by_kind!(T, joint.kind, outward::<T, P, MOVING, FORCED>, model, i, parent, state, &mut rest[0]);
         }
         // inward: sums over sub-trees
         for (i, joint) in joints.iter().enumerate().rev() {

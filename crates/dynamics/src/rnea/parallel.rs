@@ -72,6 +72,7 @@ impl<T: Real> ParallelRnea<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,
@@ -130,7 +131,7 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
     /// The outward step of one body.
     fn outward(&self, i: usize, path: &mut [Moving<T>], link: &mut Link<T>) {
         let Self { model, q, v, a, .. } = *self;
-        by_kind!(model.topology.joints()[i].kind, outward::<T, P, true>, model, i, q, v, a, path, link);
+        by_kind!(T, model.topology.joints()[i].kind, outward::<T, P, true>, model, i, q, v, a, path, link);
         if let Some(wrenches) = self.wrenches {
             link.f -= model.labels[i].force_to_compiled(wrenches[i]);
         }

@@ -1,7 +1,5 @@
 //! What the tests share: robots, states, tolerances, and flow derivatives.
 
-#![allow(dead_code, unused_imports, reason = "three test programs compile this module, each uses a part of it")]
-
 use featherbench_dynamics::TreeSparse;
 use featherbench_model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model, Placement, Topology, integrate};
 use featherbench_robots::{Random, StateBatch};

@@ -1,7 +1,7 @@
 //! The derivative of the variational midpoint rule: on every kind of joint, its transpose, and the symplectic form that it keeps.
 
 use crate::common;
-use crate::sensitivity::{Case, Driven, differences, dot};
+use crate::integrate::sensitivity::{Case, Driven, differences, dot};
 
 use common::{ROBOTS, build, distance, largest, within};
 use featherbench_dynamics::integrate::{

@@ -60,6 +60,8 @@ impl Counted {
 }
 
 impl Real for Counted {
+    const COMPACT: bool = true;
+
     fn from_f64(value: f64) -> Self {
         Self(value)
     }

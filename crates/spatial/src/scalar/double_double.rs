@@ -12,6 +12,10 @@
 //! - sine, cosine: 28u² (seen: 3u²), also at huge angles and next to their zeros.
 //!
 //! The bounds hold while nothing overflows or underflows: every nonzero operand and result is within about 2⁻⁹⁰⁰ … 2⁹⁹⁰.
+//!
+//! Sums, products and quotients of numbers are calls: a kernel holds thousands of them, and as parts of it they took most of the time of
+//! compiling. Those of registers are parts of their callers.
+//!
 //! An infinite result becomes NaN in the next operation at the latest, and NaN stays NaN.
 
 use super::error_free::{fast_two_sum, two_product, two_sum};
@@ -112,7 +116,20 @@ impl<T: Part> DoubleDouble<T> {
         Self::renormalized(high, low_error + rest)
     }
 
-    /// `self · factor + addend`.
+    /// `self + other` as a part of its caller.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self::sum((self.hi, self.lo), other)
+    }
+
+    /// `self · other` as a part of its caller.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(crate) fn times(self, other: Self) -> Self {
+        let (hi, lo) = self.raw_product(other);
+        Self::renormalized(hi, lo)
+    }
+
+    /// `self · factor + addend` as a part of its caller.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn times_plus(self, factor: Self, addend: Self) -> Self {
         Self::sum(self.raw_product(factor), addend)
@@ -120,6 +137,8 @@ impl<T: Part> DoubleDouble<T> {
 }
 
 impl Real for DoubleDouble {
+    const COMPACT: bool = true;
+
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_f64(value: f64) -> Self {
         Self { hi: value, lo: 0.0 }
@@ -130,12 +149,12 @@ impl Real for DoubleDouble {
         exact
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline(never)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         self.times_plus(factor, addend)
     }
 
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline(never)]
     fn sqrt(self) -> Self {
         let root = self.hi.sqrt();
         if root == 0.0 {
@@ -188,7 +207,7 @@ impl<T: Part> Add for DoubleDouble<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
-        Self::sum((self.hi, self.lo), other)
+        T::extended_sum(self, other)
     }
 }
 
@@ -204,14 +223,13 @@ impl<T: Part> Mul for DoubleDouble<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, other: Self) -> Self {
-        let (hi, lo) = self.raw_product(other);
-        Self::renormalized(hi, lo)
+        T::extended_product(self, other)
     }
 }
 
 impl Div for DoubleDouble {
     type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[inline(never)]
     fn div(self, other: Self) -> Self {
         let quotient = self.hi / other.hi;
         let product = other.scale(quotient);

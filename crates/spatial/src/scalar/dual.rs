@@ -29,6 +29,9 @@ impl<T: Real> Dual<T> {
 }
 
 impl<T: Real> Real for Dual<T> {
+    // A dual over f64 is timed, others are not.
+    const COMPACT: bool = T::COMPACT || size_of::<T>() > size_of::<f64>();
+
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_f64(value: f64) -> Self {
         Self::constant(T::from_f64(value))
@@ -41,10 +44,7 @@ impl<T: Real> Real for Dual<T> {
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
-        Self {
-            value: self.value.mul_add(factor.value, addend.value),
-            derivative: self.value.mul_add(factor.derivative, self.derivative.mul_add(factor.value, addend.derivative)),
-        }
+        if Self::COMPACT { called::mul_add(self, factor, addend) } else { inlined::mul_add(self, factor, addend) }
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
@@ -71,6 +71,70 @@ impl<T: Real> Real for Dual<T> {
     }
 }
 
+/// The operations as parts of their callers.
+mod inlined {
+    use super::{Dual, Real};
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn sum<T: Real>(a: Dual<T>, b: Dual<T>) -> Dual<T> {
+        Dual::new(a.value + b.value, a.derivative + b.derivative)
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn difference<T: Real>(a: Dual<T>, b: Dual<T>) -> Dual<T> {
+        Dual::new(a.value - b.value, a.derivative - b.derivative)
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn product<T: Real>(a: Dual<T>, b: Dual<T>) -> Dual<T> {
+        Dual::new(a.value * b.value, a.value.mul_add(b.derivative, a.derivative * b.value))
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn quotient<T: Real>(a: Dual<T>, b: Dual<T>) -> Dual<T> {
+        let quotient = a.value / b.value;
+        Dual::new(quotient, (-quotient).mul_add(b.derivative, a.derivative) / b.value)
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn mul_add<T: Real>(a: Dual<T>, b: Dual<T>, c: Dual<T>) -> Dual<T> {
+        Dual {
+            value: a.value.mul_add(b.value, c.value),
+            derivative: a.value.mul_add(b.derivative, a.derivative.mul_add(b.value, c.derivative)),
+        }
+    }
+}
+
+/// The same operations as calls, for scalars that are [`Real::COMPACT`].
+mod called {
+    use super::{Dual, Real, inlined};
+
+    #[inline(never)]
+    pub fn sum<T: Real>(a: Dual<T>, b: Dual<T>) -> Dual<T> {
+        inlined::sum(a, b)
+    }
+
+    #[inline(never)]
+    pub fn difference<T: Real>(a: Dual<T>, b: Dual<T>) -> Dual<T> {
+        inlined::difference(a, b)
+    }
+
+    #[inline(never)]
+    pub fn product<T: Real>(a: Dual<T>, b: Dual<T>) -> Dual<T> {
+        inlined::product(a, b)
+    }
+
+    #[inline(never)]
+    pub fn quotient<T: Real>(a: Dual<T>, b: Dual<T>) -> Dual<T> {
+        inlined::quotient(a, b)
+    }
+
+    #[inline(never)]
+    pub fn mul_add<T: Real>(a: Dual<T>, b: Dual<T>, c: Dual<T>) -> Dual<T> {
+        inlined::mul_add(a, b, c)
+    }
+}
+
 impl<T: Real> Lift<Dual<T>> for f64 {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn lift(self) -> Dual<T> {
@@ -82,7 +146,7 @@ impl<T: Real> Add for Dual<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
-        Self::new(self.value + other.value, self.derivative + other.derivative)
+        if Self::COMPACT { called::sum(self, other) } else { inlined::sum(self, other) }
     }
 }
 
@@ -90,7 +154,7 @@ impl<T: Real> Sub for Dual<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub(self, other: Self) -> Self {
-        Self::new(self.value - other.value, self.derivative - other.derivative)
+        if Self::COMPACT { called::difference(self, other) } else { inlined::difference(self, other) }
     }
 }
 
@@ -98,7 +162,7 @@ impl<T: Real> Mul for Dual<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, other: Self) -> Self {
-        Self::new(self.value * other.value, self.value.mul_add(other.derivative, self.derivative * other.value))
+        if Self::COMPACT { called::product(self, other) } else { inlined::product(self, other) }
     }
 }
 
@@ -106,8 +170,7 @@ impl<T: Real> Div for Dual<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn div(self, other: Self) -> Self {
-        let quotient = self.value / other.value;
-        Self::new(quotient, (-quotient).mul_add(other.derivative, self.derivative) / other.value)
+        if Self::COMPACT { called::quotient(self, other) } else { inlined::quotient(self, other) }
     }
 }
 

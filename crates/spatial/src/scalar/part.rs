@@ -27,6 +27,18 @@ pub trait Part: Real {
 
     /// Sine and cosine of an angle in radians, all in two parts.
     fn sin_cos_extended(angle: [Self; 2]) -> [[Self; 2]; 2];
+
+    /// The sum of double-doubles.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn extended_sum(a: DoubleDouble<Self>, b: DoubleDouble<Self>) -> DoubleDouble<Self> {
+        a.plus(b)
+    }
+
+    /// The product of double-doubles.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn extended_product(a: DoubleDouble<Self>, b: DoubleDouble<Self>) -> DoubleDouble<Self> {
+        a.times(b)
+    }
 }
 
 impl Part for f64 {
@@ -46,6 +58,16 @@ impl Part for f64 {
     fn sin_cos_extended([value, rest]: [f64; 2]) -> [[f64; 2]; 2] {
         let (sin, cos) = DoubleDouble::from_parts(value, rest).sin_cos();
         [sin, cos].map(Self::split)
+    }
+
+    #[inline(never)]
+    fn extended_sum(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
+        a.plus(b)
+    }
+
+    #[inline(never)]
+    fn extended_product(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
+        a.times(b)
     }
 }
 

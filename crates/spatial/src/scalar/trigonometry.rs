@@ -163,24 +163,24 @@ pub(super) fn near_tabulated<T: Part>(r: DoubleDouble<T>, k: T, tabulated: [T; 4
     // d = r − k/64, the first difference exact;  z = d² ≤ 2⁻¹⁴
     let (d_hi, d_lo) = fast_two_sum(r.hi() - k * T::from_f64(1.0 / 64.0), r.rest());
     let d = DoubleDouble::from_parts(d_hi, d_lo);
-    let z = d * d;
+    let z = d.times(d);
     let y = z.hi();
 
     // sin d = d + d z (−1/3! + z (1/5! + z (−1/7! + …))), the inner terms in one part: they add less than 2⁻⁵⁴ of the sum
     let tail = horner(y, horner(y, horner(y, T::from_f64(SIN[5]), SIN[4]), SIN[3]), SIN[2]);
     let fifth = DoubleDouble::renormalized(T::from_f64(SIN[1]), horner(y, tail, SIN_REST[1]));
-    let third = descending(constants(SIN[0], SIN_REST[0]), z * fifth);
-    let sin_d = descending(d, d * (z * third));
+    let third = descending(constants(SIN[0], SIN_REST[0]), z.times(fifth));
+    let sin_d = descending(d, d.times(z.times(third)));
 
     // cos d − 1 = z (−1/2! + z (1/4! + z (−1/6! + …)))
     let tail = horner(y, horner(y, horner(y, T::from_f64(COS[6]), COS[5]), COS[4]), COS[3]);
     let sixth = DoubleDouble::renormalized(T::from_f64(COS[2]), horner(y, tail, COS_REST[2]));
-    let fourth = descending(constants(COS[1], COS_REST[1]), z * sixth);
-    let cos_d_less_one = z * descending(constants(COS[0], 0.0), z * fourth);
+    let fourth = descending(constants(COS[1], COS_REST[1]), z.times(sixth));
+    let cos_d_less_one = z.times(descending(constants(COS[0], 0.0), z.times(fourth)));
 
     // sin(k/64 + d) = s + (c sin d + s (cos d − 1)),  cos(k/64 + d) = c + (c (cos d − 1) − s sin d)
-    let sin = s + c.times_plus(sin_d, s * cos_d_less_one);
-    let cos = descending(c, c.times_plus(cos_d_less_one, -(s * sin_d)));
+    let sin = s.plus(c.times_plus(sin_d, s.times(cos_d_less_one)));
+    let cos = descending(c, c.times_plus(cos_d_less_one, -s.times(sin_d)));
     (sin, cos)
 }
 

@@ -1,9 +1,9 @@
 //! One robot of a million joints: time and memory of each step from its family to its accelerations.
 //!
 //! ```text
-//! cargo bench -p featherbench-dynamics --bench scale            # a chain of 10⁶ joints, a binary tree of 2²⁰ − 1
-//! cargo bench -p featherbench-dynamics --bench scale -- 100000  # a chain of 10⁵ joints, a binary tree of 2¹⁷ − 1
-//! cargo bench -p featherbench-dynamics --bench scale -- --test  # small ones, once: a test
+//! cargo run --release -p featherbench-dynamics --features measurements --example scale            # a chain of 10⁶ joints, a binary tree of 2²⁰ − 1
+//! cargo run --release -p featherbench-dynamics --features measurements --example scale -- 100000  # a chain of 10⁵ joints, a binary tree of 2¹⁷ − 1
+//! cargo run --release -p featherbench-dynamics --features measurements --example scale -- --test  # small ones, once
 //! ```
 //!
 //! A time is the smallest of several calls on one workspace. *Resident* is the memory of the process once the step is done, *peak* its largest
@@ -20,8 +20,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 fn main() {
-    // cargo passes `--bench` to a bench, and nothing to a test of it.
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
     let test = arguments.iter().any(|argument| argument == "--test");
     let n = arguments.iter().find_map(|argument| argument.parse().ok()).unwrap_or(if test { 1000 } else { 1_000_000 });
     let calls = if test { 1 } else { 7 };

@@ -1,0 +1,8 @@
+//! The tests of integrators, sensitivities and adjoints.
+
+mod adaptive;
+mod conservation;
+mod order;
+mod sensitivity;
+mod variational;
+mod variational_derivative;
