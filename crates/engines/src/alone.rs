@@ -2,11 +2,10 @@
 //!
 //! [`command`] is this same program as `featherbench alone`. It answers one request by [`serve`], on standard input and output.
 
-use crate::Featherbench;
-use crate::kernel::reads_description;
 use crate::oracle::{checked, shaped};
 use featherbench_bench::alone::{self, Measured, Question};
 use featherbench_bench::{Limits, Memory, NoAnswer, OWN, Quantity, Robot};
+use featherbench_kernels::{Featherbench, reads_description};
 use featherbench_protocol::{Block, Message, Process};
 use rayon::ThreadPoolBuilder;
 use serde_json::{Value, json};

@@ -1,6 +1,6 @@
 //! The engines: whatever answers questions.
 //!
-//! - [`Featherbench`] runs the kernels of this workspace.
+//! - [`Featherbench`] runs the kernels of this workspace; it is the crate `kernels`.
 //! - [`Oracle`] asks a program that follows the protocol of `oracles/PROTOCOL.md`.
 //! - [`alone`] measures our kernels in a process of their own.
 //! - [`native`] serves an engine's native library by the same protocol.
@@ -10,24 +10,17 @@
 //! file here.
 
 pub mod alone;
-mod batch;
 mod coding;
 pub mod conformance;
-mod derivatives;
-mod factors;
-mod kernel;
 pub mod native;
 mod oracle;
-mod own;
-mod parallel;
 mod recorded;
 mod reproducer;
 mod request;
-mod second_derivatives;
 mod shape;
 
+pub use featherbench_kernels::{Featherbench, timed};
 pub use featherbench_protocol::{Clock, Limits, SystemClock};
 pub use oracle::{Oracle, OracleResidual};
-pub use own::{Featherbench, timed};
 pub use recorded::{EngineRecording, Recorded, Recording, RecordingError, Recordings, read_recordings, recording_name};
 pub use reproducer::reproduce;

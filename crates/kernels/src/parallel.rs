@@ -1,6 +1,6 @@
 //! Our kernels for one large robot on all threads of the current pool of `rayon`.
 //!
-//! [`crate::alone`] measures them. Other studies do not ask them: most of their robots are too small to be divided, and their kernels run on
+//! `featherbench alone` measures them. Other studies do not ask them: most of their robots are too small to be divided, and their kernels run on
 //! one pinned core.
 
 use crate::kernel::{Kernel, kept, matrices, written};

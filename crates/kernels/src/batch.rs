@@ -18,6 +18,7 @@ const GROUPS: usize = 8;
 /// A batch with its states and the results of its last call.
 struct Batched<'a, S: Number> {
     batch: Batch<'a, S>,
+    call: Call<S>,
     quantity: Quantity,
     /// q, v, and a or τ, state after state, with the numbers of each. After the last state the first ones stand again, as many as a call
     /// takes: so a call may begin at any state.
@@ -33,18 +34,44 @@ struct Batched<'a, S: Number> {
     body: usize,
 }
 
+/// Answers a quantity for states with these q, v, and a or τ. The body is that of a Jacobian.
+type Call<S> = for<'a> fn(&mut Batch<'a, S>, (Quantity, usize), [&[S]; 3], &mut [S]) -> Result<(), BatchError>;
+
 /// In double precision.
 pub(crate) fn double<'a>(robot: &'a Robot, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
-    Box::new(Batched::new(Batch::new(&robot.model), robot, states, quantity))
+    Box::new(Batched::new(Batch::new(&robot.model), call, robot, states, quantity))
 }
 
-/// In single precision throughout, states and parameters rounded to it before.
+fn call(
+    batch: &mut Batch<'_, f64>,
+    (quantity, body): (Quantity, usize),
+    [q, v, third]: [&[f64]; 3],
+    results: &mut [f64],
+) -> Result<(), BatchError> {
+    match quantity {
+        Quantity::InverseDynamics => batch.inverse_dynamics(q, v, third, None, results),
+        Quantity::Bias => batch.bias_force(q, v, None, results),
+        Quantity::MassMatrixSparse => batch.mass_matrix(q, results),
+        Quantity::MassMatrixInverse => batch.inverse_mass_matrix(q, results),
+        Quantity::Momentum => batch.momentum(q, v, results),
+        Quantity::BodyAcceleration => batch.kinematics(q, v, third, results),
+        Quantity::BodyJacobian => batch.body_jacobian(q, body, results),
+        Quantity::InverseDynamicsDq | Quantity::InverseDynamicsDv => batch.id_derivatives(q, v, third, None, results),
+        Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv => batch.fd_derivatives(q, v, third, None, results),
+        Quantity::CoriolisMatrix => batch.coriolis_matrix(q, v, results),
+        Quantity::TorqueRegressor => batch.torque_regressor(q, v, third, results),
+        _ => batch.forward_dynamics(q, v, third, None, results),
+    }
+}
+
+/// Forward dynamics in single precision throughout, states and parameters rounded to it before.
 pub(crate) fn single<'a>(robot: &'a Robot, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
-    Box::new(Batched::<f32>::new(Batch::of_model(robot.model.lift()), robot, states, quantity))
+    let call: Call<f32> = |batch, _, [q, v, tau], a| batch.forward_dynamics(q, v, tau, None, a);
+    Box::new(Batched::new(Batch::of_model(robot.model.lift()), call, robot, states, quantity))
 }
 
 impl<'a, S: Number + Lift<S::Lanes>> Batched<'a, S> {
-    fn new(batch: Batch<'a, S>, robot: &Robot, states: &StateBatch, quantity: Quantity) -> Self {
+    fn new(batch: Batch<'a, S>, call: Call<S>, robot: &Robot, states: &StateBatch, quantity: Quantity) -> Self {
         let topology = &robot.model.topology;
         let body = robot.model.described[robot.deepest_body()];
         let (each, places) = shape(&robot.model, quantity);
@@ -63,27 +90,14 @@ impl<'a, S: Number + Lift<S::Lanes>> Batched<'a, S> {
             (places.flat_map(|k| of(states, k).iter().map(|&x| S::from_f64(x))).collect(), each)
         };
         let inputs = [row(StateBatch::q, topology.nq()), row(StateBatch::v, topology.nv()), row(third, topology.nv())];
-        Self { batch, quantity, inputs, results: vec![S::zero(); each * together], each, places, together, body }
+        Self { batch, call, quantity, inputs, results: vec![S::zero(); each * together], each, places, together, body }
     }
 
     /// Evaluates `count` states from `k` on.
     fn run(&mut self, k: usize, count: usize) -> Result<(), BatchError> {
         let [q, v, third] = self.inputs.each_ref().map(|(numbers, each)| &numbers[k * each..(k + count) * each]);
         let results = &mut self.results[..count * self.each];
-        match self.quantity {
-            Quantity::InverseDynamics => self.batch.inverse_dynamics(q, v, third, None, results),
-            Quantity::Bias => self.batch.bias_force(q, v, None, results),
-            Quantity::MassMatrixSparse => self.batch.mass_matrix(q, results),
-            Quantity::MassMatrixInverse => self.batch.inverse_mass_matrix(q, results),
-            Quantity::Momentum => self.batch.momentum(q, v, results),
-            Quantity::BodyAcceleration => self.batch.kinematics(q, v, third, results),
-            Quantity::BodyJacobian => self.batch.body_jacobian(q, self.body, results),
-            Quantity::InverseDynamicsDq | Quantity::InverseDynamicsDv => self.batch.id_derivatives(q, v, third, None, results),
-            Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv => self.batch.fd_derivatives(q, v, third, None, results),
-            Quantity::CoriolisMatrix => self.batch.coriolis_matrix(q, v, results),
-            Quantity::TorqueRegressor => self.batch.torque_regressor(q, v, third, results),
-            _ => self.batch.forward_dynamics(q, v, third, None, results),
-        }
+        (self.call)(&mut self.batch, (self.quantity, self.body), [q, v, third], results)
     }
 }
 

@@ -1,6 +1,5 @@
 //! Our engine, `featherbench`: the kernels of this workspace, run in this process.
 
-pub use crate::kernel::timed;
 use crate::kernel::{Failure, Kernel, kernel, methods};
 use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Quantity, Robot};
 use featherbench_results::EngineSource;

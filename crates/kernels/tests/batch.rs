@@ -2,7 +2,7 @@
 
 use featherbench_bench::measure::{ForwardScale, scaled_error};
 use featherbench_bench::{BATCH, Engine, Quantity, Robot};
-use featherbench_engines::Featherbench;
+use featherbench_kernels::Featherbench;
 use featherbench_results::ModelOrigin;
 use featherbench_robots::Family;
 

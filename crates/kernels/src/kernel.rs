@@ -336,7 +336,7 @@ fn forward_dynamics_single<'a>(model: &'a Model<f64>, states: &'a StateBatch, fa
 }
 
 /// Whether a method needs the robot's description beside its model.
-pub(crate) fn reads_description(method: &str) -> bool {
+pub fn reads_description(method: &str) -> bool {
     matches!(method, "refined_1" | "refined_2")
 }
 
