@@ -110,7 +110,7 @@ impl<'a> Compiled<'a> {
 
     /// Has cargo build it. The hash is written last: what a build that breaks off leaves behind is not taken.
     fn build(&self) -> Result<PathBuf, String> {
-        let (start, made_of, folder) = (Instant::now(), sources(self.root.path(), self.folder)?, self.root.built(self.folder));
+        let (made_of, folder) = (sources(self.root.path(), self.folder)?, self.root.built(self.folder));
         let stamp = folder.join("built");
         let named = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
         std::fs::create_dir_all(&folder).map_err(|error| named(&folder, error))?;
@@ -118,35 +118,51 @@ impl<'a> Compiled<'a> {
         // The workspace's own folder, not a link to it: the crates beside it are found from there, and so are the compiler's flags.
         let workspace = self.root.oracles().join(self.folder);
         let workspace = workspace.canonicalize().map_err(|error| named(&workspace, error))?;
-        let bar = spinner(&format!("building {} (a minute or two, once) …", self.name));
-        let mut cargo = Command::new("cargo");
-        let spawned = cargo
-            .current_dir(&workspace)
-            .args(["build", "--release", "--locked", "--color", "never", "--target-dir"])
-            .arg(std::path::absolute(&folder).map_err(|error| named(&folder, error))?)
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn();
-        let mut child = spawned.map_err(|error| format!("cargo cannot be started: {error}"))?;
-        let mut lines = Vec::new();
-        for line in child.stderr.take().into_iter().flat_map(|errors| BufReader::new(errors).lines().map_while(Result::ok)) {
-            bar.set_message(format!("building {}: {}", self.name, line.trim()));
-            lines.push(line);
-        }
-        let status = child.wait().map_err(|error| format!("cargo: {error}"))?;
-        bar.finish_and_clear();
-        if !status.success() {
-            return Err(format!("`cargo build` in {} failed ({status}): {}", workspace.display(), complaint(&lines)));
-        }
         let product = self.product();
-        if !product.is_file() {
-            return Err(format!("cargo built something, but not {}; a CARGO_BUILD_TARGET would be why", product.display()));
-        }
+        cargo_build(self.name, &workspace, &folder, &["--release"], &product)?;
         ::featherbench_results::atomic_write(&stamp, made_of.as_bytes()).map_err(|error| error.to_string())?;
-        eprintln!("built {} in {:.0} s: {}", self.name, start.elapsed().as_secs_f64(), product.display());
         Ok(product)
     }
+}
+
+/// Has cargo build in a workspace, with its progress on the terminal. `product` is the file that it shall make.
+///
+/// # Errors
+/// A sentence that says why it is not there.
+pub fn cargo_build(name: &str, workspace: &Path, target: &Path, arguments: &[&str], product: &Path) -> Result<(), String> {
+    let start = Instant::now();
+    // Where there is no such folder, the system says that cargo is not there.
+    if !workspace.is_dir() {
+        return Err(format!("{} is not there", workspace.display()));
+    }
+    let target = std::path::absolute(target).map_err(|error| format!("{}: {error}", target.display()))?;
+    let bar = spinner(&format!("building {name} (a minute or two, once) …"));
+    let mut cargo = Command::new("cargo");
+    let spawned = cargo
+        .current_dir(workspace)
+        .args(["build", "--locked", "--color", "never", "--target-dir"])
+        .arg(target)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn();
+    let mut child = spawned.map_err(|error| format!("cargo cannot be started: {error}"))?;
+    let mut lines = Vec::new();
+    for line in child.stderr.take().into_iter().flat_map(|errors| BufReader::new(errors).lines().map_while(Result::ok)) {
+        bar.set_message(format!("building {name}: {}", line.trim()));
+        lines.push(line);
+    }
+    let status = child.wait().map_err(|error| format!("cargo: {error}"))?;
+    bar.finish_and_clear();
+    if !status.success() {
+        return Err(format!("`cargo build` in {} failed ({status}): {}", workspace.display(), complaint(&lines)));
+    }
+    if !product.is_file() {
+        return Err(format!("cargo built something, but not {}; a CARGO_BUILD_TARGET would be why", product.display()));
+    }
+    eprintln!("built {name} in {:.0} s: {}", start.elapsed().as_secs_f64(), product.display());
+    Ok(())
 }
 
 /// Cargo's first error, and the innermost cause that it gives.

@@ -4,13 +4,13 @@ use crate::args::{Estimator, Format, IdentifyArgs, Term};
 use crate::fail::Fail;
 use crate::root::Root;
 use crate::say::{say, text};
-use crate::{generate, oracles, robot_file, robots};
+use crate::{generate, oracles, parquet, robot_file, robots};
 use featherbench_bench::{Engine, FileFormat, SemidefiniteProblem};
 use featherbench_engines::Limits;
 use featherbench_formats::urdf::{Base as UrdfBase, Options};
 use featherbench_identification::{
-    Base, Change, Flag, Identified, LinearModel, Log, Method, Request, Search, Semidefinite, Smoothing, Terms, changes, described, excite,
-    identify as estimate, samples,
+    Base, Change, Flag, Identified, LinearModel, Log, LogProblem, Method, Request, Search, Semidefinite, Smoothing, Table, Terms, changes,
+    described, excite, identify as estimate, samples,
 };
 use featherbench_model::Description;
 use serde_json::{Value, json};
@@ -91,7 +91,7 @@ fn from_log(root: &dyn Fn() -> Result<Root, Fail>, linear: &LinearModel, args: &
     if args.window.is_multiple_of(2) {
         return Err(Fail::input(format!("--window {}: give an odd number of rows, so that one is in the middle", args.window)));
     }
-    let log = Log::read(path, linear).map_err(bad)?;
+    let log = read(path, linear)?;
     let smoothing = Smoothing { order: args.order, half: args.window / 2, stride: args.stride.unwrap_or(args.window) };
     smoothing.check().map_err(bad)?;
     let samples = samples(&log, linear, smoothing).map_err(bad)?;
@@ -142,6 +142,18 @@ fn from_log(root: &dyn Fn() -> Result<Root, Fail>, linear: &LinearModel, args: &
         ))),
         _ => Ok(()),
     }
+}
+
+/// Reads a log, in Parquet by the program that reads it.
+fn read(path: &Path, linear: &LinearModel) -> Result<Log, Fail> {
+    let log = match Log::read(path, linear) {
+        Err(error) if error.problem == LogProblem::Parquet => {
+            let table = Table::of_csv(&parquet::table(path)?, &error.file).map_err(bad)?;
+            Log::of_table(table.with_rows_for_lines(), linear)
+        }
+        read => read,
+    };
+    log.map_err(bad)
 }
 
 /// Writes the robot, and says what changed.

@@ -179,6 +179,14 @@ fn rows_are_exported_into_a_new_folder() {
     sandbox.run(&["run", "--suite", "smoke", "--filter", "operations", "--out", "run"]).expect(0, &["report:"]);
     sandbox.run(&["export", "run", "--parquet", "rows"]).expect(0, &["rows/study=operations/part-0.parquet", " rows"]);
     sandbox.run(&["export", "run", "--parquet", "rows"]).expect(2, &["rows is not empty", "--parquet"]);
+    // A table in Parquet is read where a log is asked for; these rows are no log.
+    sandbox.run(&["gen", "chain", "--n", "2", "--out", "robot.json"]).expect(0, &[]);
+    let rows = "rows/study=operations/part-0.parquet";
+    sandbox.run(&["identify", "robot.json", rows]).expect(2, &[rows, "no column 'time' (there are run, cell, family, robot,"]);
+    sandbox.write("log.parquet", "PAR1 and no more");
+    sandbox
+        .run(&["identify", "robot.json", "log.parquet"])
+        .expect(2, &["error: log.parquet: the Parquet file is not readable: ", "Snappy"]);
     let path = sandbox.path("run/rows.csv");
     std::fs::write(&path, std::fs::read_to_string(&path).unwrap().replace(",pass,", ",info,")).unwrap();
     sandbox.run(&["export", "run", "--parquet", "other"]).expect(2, &["rows.csv", "checksum"]);

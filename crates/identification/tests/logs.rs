@@ -6,11 +6,6 @@ use featherbench_identification::{
 };
 use featherbench_robots::{Family, Random};
 use featherbench_spatial::larger;
-use parquet::data_type::DoubleType;
-use parquet::file::properties::WriterProperties;
-use parquet::file::writer::SerializedFileWriter;
-use parquet::schema::parser::parse_message_type;
-use std::sync::Arc;
 
 fn arm() -> LinearModel {
     LinearModel::new(&Arm::general(3, 4).describe(Gravity::Parallel, 1), Terms::NONE).unwrap()
@@ -49,35 +44,18 @@ fn csv_is_read_back_to_the_bit() {
     assert_eq!(Log { file: String::new(), ..read(&written.to_csv(&floating), &floating).unwrap() }, written);
 }
 
+/// The crate reads CSV alone, and says who reads Parquet.
 #[test]
-fn parquet_is_read_as_csv_is() {
-    let linear = arm();
-    let text = Log::of_samples(&motion(&linear, 40)).to_csv(&linear);
-    let csv = read(&text, &linear).unwrap();
-    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<&str>>());
-    let names = lines.next().unwrap();
-    let rows: Vec<Vec<f64>> = lines.map(|row| row.iter().map(|x| x.parse().unwrap()).collect()).collect();
+fn a_parquet_file_is_named_as_one() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.parquet");
-    let schema: String = names.iter().map(|name| format!("required double {name}; ")).collect();
-    let schema = Arc::new(parse_message_type(&format!("message log {{ {schema} }}")).unwrap());
-    let properties = WriterProperties::builder().set_compression(parquet::basic::Compression::SNAPPY).build();
-    let mut writer = SerializedFileWriter::new(std::fs::File::create(&path).unwrap(), schema, Arc::new(properties)).unwrap();
-    let mut group = writer.next_row_group().unwrap();
-    for k in 0..names.len() {
-        let column: Vec<f64> = rows.iter().map(|row| row[k]).collect();
-        let mut out = group.next_column().unwrap().unwrap();
-        out.typed::<DoubleType>().write_batch(&column, None, None).unwrap();
-        out.close().unwrap();
-    }
-    group.close().unwrap();
-    writer.close().unwrap();
-
-    let parquet = Log::read(&path, &linear).unwrap();
-    assert_eq!((&parquet.time, &parquet.q, &parquet.v, &parquet.tau), (&csv.time, &csv.q, &csv.v, &csv.tau));
-    // A file that only begins like one.
     std::fs::write(&path, "PAR1 and no more").unwrap();
-    assert!(matches!(Log::read(&path, &linear).unwrap_err().problem, LogProblem::Unreadable(_)));
+    let refused = Log::read(&path, &arm()).unwrap_err();
+    assert_eq!(refused.problem, LogProblem::Parquet);
+    assert!(refused.to_string().contains("log.parquet: is a Parquet file: `featherbench identify` reads it"), "{refused}");
+    // Less than the word that a Parquet file begins with.
+    std::fs::write(&path, "PAR").unwrap();
+    assert_eq!(Log::read(&path, &arm()).unwrap_err().problem, LogProblem::Empty);
 }
 
 #[test]

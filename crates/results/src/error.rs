@@ -110,14 +110,6 @@ pub enum ResultsError {
         /// The format that is read here.
         expected: u32,
     },
-    /// A study's name cannot name a folder; nothing was written.
-    #[error("{path}: the study '{study}' cannot name a folder: letters, digits, '_' and '-' can; rename the study", path = path.display())]
-    Partition {
-        /// The folder of all studies.
-        path: PathBuf,
-        /// The study.
-        study: String,
-    },
     /// A number that must be finite is not; nothing was written.
     #[error("{path}: `{field}` is {value}: only finite numbers are written", path = path.display())]
     NonFinite {

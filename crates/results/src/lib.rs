@@ -24,7 +24,6 @@ mod error;
 mod file;
 mod names;
 mod params;
-mod parquet;
 mod properties;
 mod repeat;
 mod row;
@@ -45,7 +44,6 @@ pub use file::{
 };
 pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;
-pub use parquet::write_parquet;
 pub use properties::{Base, Feature, Properties};
 pub use repeat::{quoted, words};
 pub use row::{MARGIN_LIMIT, Row};

@@ -196,7 +196,7 @@ impl Row {
     }
 
     /// The numbers that must be finite, with their columns.
-    pub(crate) fn floats(&self) -> [(&'static str, Option<f64>); 6] {
+    pub fn floats(&self) -> [(&'static str, Option<f64>); 6] {
         let (low, high) = (("ci_low", self.ci_low), ("ci_high", self.ci_high));
         [("value", self.value), low, high, ("bound", self.bound), ("floor", self.floor), ("margin", self.margin)]
     }

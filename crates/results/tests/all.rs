@@ -2,6 +2,5 @@
 
 mod diff;
 mod integrity;
-mod parquet;
 mod round_trip;
 mod trend;

@@ -7,7 +7,7 @@ use std::fmt;
 pub struct LogError {
     /// The file.
     pub file: String,
-    /// The line, counted from 1; of a Parquet file the row.
+    /// The line, counted from 1; the row where the file has no lines.
     pub line: Option<usize>,
     /// What is wrong.
     pub problem: LogProblem,
@@ -19,6 +19,11 @@ pub enum LogProblem {
     /// The file cannot be read.
     #[error("{0}")]
     Unreadable(String),
+    /// A Parquet file.
+    #[error(
+        "is a Parquet file: `featherbench identify` reads it, the library reads CSV; `featherbench-parquet table FILE` prints it as CSV"
+    )]
+    Parquet,
     /// A column is missing.
     #[error("there is no column '{column}'{}; without it the joint's torque cannot be computed. Name columns time, q.JOINT, v.JOINT, a.JOINT, tau.JOINT", near(.present))]
     MissingColumn {

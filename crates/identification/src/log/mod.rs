@@ -1,4 +1,4 @@
-//! Logs: what a robot measured, as CSV or Parquet.
+//! Logs: what a robot measured, as CSV.
 //!
 //! A log has a row per time and these columns, in any order; others are left alone:
 //!
@@ -43,7 +43,7 @@ pub struct Log {
 }
 
 impl Log {
-    /// Reads a log: Parquet if the file begins like one, else CSV.
+    /// Reads a log in CSV.
     ///
     /// # Errors
     /// [`LogError`], naming file, line, column and what to do.

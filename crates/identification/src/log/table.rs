@@ -1,14 +1,11 @@
-//! A table of numbers by column name, from CSV or Parquet.
+//! A table of numbers by column name, from CSV.
 
 use super::{LogError, LogProblem};
-use parquet::file::reader::{FileReader, SerializedFileReader};
-use parquet::record::Field;
-use std::fs::File;
-use std::io::Read;
+use std::fmt::Display;
 use std::path::Path;
 
 /// What a Parquet file begins with.
-const PARQUET: &[u8; 4] = b"PAR1";
+const PARQUET: &[u8] = b"PAR1";
 
 /// Columns of numbers with their names.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -19,7 +16,7 @@ pub struct Table {
     pub names: Vec<String>,
     /// The fields, row after row. A field that is empty or no number is an error only if its column is used.
     rows: Vec<Vec<Cell>>,
-    /// The line of each row; of a Parquet file its number.
+    /// The line of each row; its number where the file has no lines.
     pub lines: Vec<usize>,
 }
 
@@ -31,21 +28,19 @@ enum Cell {
 }
 
 impl Table {
-    /// Reads a file: Parquet if it begins like one, else CSV.
+    /// Reads a CSV file.
     ///
     /// # Errors
-    /// [`LogError`] when the file cannot be read.
+    /// [`LogError`] when the file cannot be read; [`LogProblem::Parquet`] when it is a Parquet file, which this crate does not read.
     pub fn read(path: &Path) -> Result<Self, LogError> {
         let file = path.display().to_string();
-        let unreadable = |text: String| LogError { file: file.clone(), line: None, problem: LogProblem::Unreadable(text) };
-        let mut opened = File::open(path).map_err(|error| unreadable(error.to_string()))?;
-        let mut head = [0; 4];
-        // A file of less than four bytes is no Parquet.
-        let is_parquet = opened.read_exact(&mut head).is_ok() && &head == PARQUET;
-        if is_parquet {
-            return Self::of_parquet(opened, &file);
+        let bad = |problem| LogError { file: file.clone(), line: None, problem };
+        let unreadable = |error: &dyn Display| bad(LogProblem::Unreadable(error.to_string()));
+        let bytes = std::fs::read(path).map_err(|error| unreadable(&error))?;
+        if bytes.starts_with(PARQUET) {
+            return Err(bad(LogProblem::Parquet));
         }
-        let text = std::fs::read_to_string(path).map_err(|error| unreadable(error.to_string()))?;
+        let text = String::from_utf8(bytes).map_err(|error| unreadable(&error))?;
         Self::of_csv(&text, &file)
     }
 
@@ -82,21 +77,9 @@ impl Table {
         Ok(table)
     }
 
-    fn of_parquet(opened: File, file: &str) -> Result<Self, LogError> {
-        let unreadable = |error: parquet::errors::ParquetError| {
-            let text = format!("the Parquet file is not readable: {error} (plain and Snappy compression are read)");
-            LogError { file: file.into(), line: None, problem: LogProblem::Unreadable(text) }
-        };
-        let reader = SerializedFileReader::new(opened).map_err(unreadable)?;
-        let names = reader.metadata().file_metadata().schema().get_fields().iter().map(|field| field.name().to_owned()).collect();
-        let mut table = Self { file: file.into(), names, ..Self::default() };
-        table.check_names()?;
-        for (k, row) in reader.get_row_iter(None).map_err(unreadable)?.enumerate() {
-            let row = row.map_err(unreadable)?;
-            table.lines.push(k + 1);
-            table.rows.push(row.get_column_iter().map(|(_, field)| cell(field)).collect());
-        }
-        Ok(table)
+    /// The same with numbers of rows, from one, for lines: of a file that was converted to CSV, and whose rows are in no lines.
+    pub fn with_rows_for_lines(self) -> Self {
+        Self { lines: (1..=self.rows.len()).collect(), ..self }
     }
 
     fn check_names(&self) -> Result<(), LogError> {
@@ -151,23 +134,5 @@ impl Table {
             }
         }
         Ok(values)
-    }
-}
-
-/// A field of Parquet as a number. Integers are times or counts; beyond 2⁵³ they are rounded.
-fn cell(field: &Field) -> Cell {
-    match field {
-        Field::Double(x) => Cell::Number(*x),
-        Field::Float(x) => Cell::Number(f64::from(*x)),
-        Field::Long(x) => Cell::Number(*x as f64),
-        Field::Int(x) => Cell::Number(f64::from(*x)),
-        Field::Short(x) => Cell::Number(f64::from(*x)),
-        Field::Byte(x) => Cell::Number(f64::from(*x)),
-        Field::ULong(x) => Cell::Number(*x as f64),
-        Field::UInt(x) => Cell::Number(f64::from(*x)),
-        Field::UShort(x) => Cell::Number(f64::from(*x)),
-        Field::UByte(x) => Cell::Number(f64::from(*x)),
-        Field::Null => Cell::Text("null".into()),
-        other => Cell::Text(other.to_string()),
     }
 }

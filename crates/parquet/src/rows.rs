@@ -3,8 +3,8 @@
 //! The column `study` is in the names of the folders, as hive has it, and in no file. Empty texts are null: they do not apply. So a column has the
 //! same type in every study, and no reader guesses one.
 
-use crate::file::{RATIO, atomic_write_with};
-use crate::{COLUMNS, Column, ColumnType, ResultsError, Row};
+use crate::Error;
+use featherbench_results::{COLUMNS, Column, ColumnType, RATIO, Row, atomic_write_with};
 use parquet::basic::Compression;
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
@@ -25,19 +25,19 @@ const PARTITION: &str = "study";
 /// Writes rows into a folder, study by study, and returns the files in alphabetical order. Rows keep their order within a study.
 ///
 /// # Errors
-/// [`ResultsError::Io`] when a file cannot be written; [`ResultsError::Partition`] when a study has no name that a folder can have.
-pub fn write_parquet(folder: &Path, rows: &[Row]) -> Result<Vec<PathBuf>, ResultsError> {
+/// [`Error::Results`] when a file cannot be written; [`Error::Partition`] when a study has no name that a folder can have.
+pub fn write_rows(folder: &Path, rows: &[Row]) -> Result<Vec<PathBuf>, Error> {
     let mut studies: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
     for row in rows {
         studies.entry(&row.study).or_default().push(row);
     }
     let plain = |name: &&&str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-".contains(c));
     if let Some(study) = studies.keys().find(|name| !plain(name)) {
-        return Err(ResultsError::Partition { path: folder.to_owned(), study: (*study).to_owned() });
+        return Err(Error::Partition { path: folder.to_owned(), study: (*study).to_owned() });
     }
     let write = |(study, rows): (&str, Vec<&Row>)| {
         let path = folder.join(format!("{PARTITION}={study}")).join("part-0.parquet");
-        atomic_write_with(&path, |file| write_rows(file, &rows).map_err(io::Error::other))?;
+        atomic_write_with(&path, |file| encode(file, &rows).map_err(io::Error::other))?;
         Ok(path)
     };
     studies.into_iter().map(write).collect()
@@ -61,7 +61,7 @@ fn schema() -> String {
     format!("message row {{ {} }}", columns().map(line).collect::<Vec<_>>().join(" "))
 }
 
-fn write_rows(file: &mut (dyn Write + Send), rows: &[&Row]) -> Result<(), ParquetError> {
+fn encode(file: &mut (dyn Write + Send), rows: &[&Row]) -> Result<(), ParquetError> {
     let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
     let mut writer = SerializedFileWriter::new(file, Arc::new(parse_message_type(&schema())?), Arc::new(properties))?;
     for rows in rows.chunks(GROUP) {

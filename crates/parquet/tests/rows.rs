@@ -1,6 +1,7 @@
 //! Rows as Parquet: each column has its type, and what is read back is what a CSV file holds.
 
-use featherbench_results::{COLUMNS, ColumnType, Kind, Relation, ResultsError, Row, Verdict, to_csv, write_parquet};
+use featherbench_parquet::{Error, write_rows};
+use featherbench_results::{COLUMNS, ColumnType, Kind, Relation, Row, Verdict, to_csv};
 use parquet::basic::{LogicalType, Type};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
@@ -66,7 +67,7 @@ fn read(path: &Path) -> Vec<Vec<String>> {
 #[test]
 fn what_is_read_back_is_what_the_csv_file_holds() {
     let folder = tempfile::tempdir().unwrap();
-    let files = write_parquet(folder.path(), &rows()).unwrap();
+    let files = write_rows(folder.path(), &rows()).unwrap();
     let names: Vec<_> = files.iter().map(|path| path.strip_prefix(folder.path()).unwrap().to_str().unwrap()).collect();
     assert_eq!(names, ["study=agreement/part-0.parquet", "study=timing/part-0.parquet"]);
 
@@ -93,7 +94,7 @@ fn what_is_read_back_is_what_the_csv_file_holds() {
 #[test]
 fn every_file_has_the_same_typed_columns() {
     let folder = tempfile::tempdir().unwrap();
-    for path in write_parquet(folder.path(), &rows()).unwrap() {
+    for path in write_rows(folder.path(), &rows()).unwrap() {
         let reader = SerializedFileReader::new(File::open(path).unwrap()).unwrap();
         let schema = reader.metadata().file_metadata().schema_descr();
         let due: Vec<_> = COLUMNS.iter().filter(|column| column.name != "study").collect();
@@ -117,7 +118,7 @@ fn every_file_has_the_same_typed_columns() {
 fn long_studies_have_several_groups() {
     let folder = tempfile::tempdir().unwrap();
     let rows: Vec<Row> = (0..140_000).map(|k| Row { study: "long".into(), ..Row::default() }.informed(f64::from(k))).collect();
-    let files = write_parquet(folder.path(), &rows).unwrap();
+    let files = write_rows(folder.path(), &rows).unwrap();
     let reader = SerializedFileReader::new(File::open(&files[0]).unwrap()).unwrap();
     assert!(reader.metadata().num_row_groups() > 1);
     let value = COLUMNS.iter().position(|column| column.name == "value").unwrap();
@@ -130,8 +131,8 @@ fn long_studies_have_several_groups() {
 fn a_study_that_no_folder_can_be_named_after_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     for study in ["", "../x", "a=b"] {
-        let error = write_parquet(folder.path(), &[Row { study: study.into(), ..Row::default() }]).unwrap_err();
-        assert!(matches!(&error, ResultsError::Partition { study: named, .. } if named == study), "{error}");
+        let error = write_rows(folder.path(), &[Row { study: study.into(), ..Row::default() }]).unwrap_err();
+        assert!(matches!(&error, Error::Partition { study: named, .. } if named == study), "{error}");
     }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
