@@ -8,7 +8,7 @@ use crate::root::Root;
 use crate::say::{self, say};
 use ::featherbench_results::{Expectation, GateKind, Properties, RobotInfo, Row, RunInfo, atomic_write};
 use featherbench_bench::{Counts, Suite, provenance};
-use featherbench_report::{Findings, Status, forms};
+use featherbench_report::{Findings, forms, unmet};
 use std::path::Path;
 
 /// Findings that are printed; the forms for programs have all.
@@ -58,12 +58,7 @@ fn conditions(root: &Root, suite: &Suite, folder: &Path, info: &RunInfo, records
 
 /// Prints what is new, from the gravest, each with its command; what is known is counted.
 fn tell(info: &RunInfo, findings: &Findings) {
-    let word = match findings.status {
-        Status::Passed => "passed",
-        Status::Failed => "FAILED",
-        Status::Empty => "nothing judged",
-    };
-    say!("{word}: {}", findings.headline());
+    say!("{}", findings.verdict());
     for (index, found) in findings.red().take(TOLD).enumerate() {
         say!("  {}. {}: {}", index + 1, found.level(), found.sentence());
         if !found.again.is_empty() {
@@ -75,15 +70,8 @@ fn tell(info: &RunInfo, findings: &Findings) {
         say!("  and {more} more; --json, --junit and --markdown have all");
     }
     let met = info.expected.iter().filter(|condition| condition.is_met()).count();
-    tell_unmet(info);
+    unmet(info).for_each(|line| say!("{line}"));
     say!("{} among {}; {met} of {} gates met", findings.levels(), findings.extent(), info.expected.len());
-}
-
-/// Prints the conditions that are not met: what each counts, and by how much it fell short.
-pub fn tell_unmet(info: &RunInfo) {
-    for Expectation { kind, what, reason, .. } in info.expected.iter().filter(|condition| !condition.is_met()) {
-        say!("  gate not met, {kind}: {what}: {reason}");
-    }
 }
 
 /// The exit of a run by its findings and conditions.

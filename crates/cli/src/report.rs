@@ -37,11 +37,10 @@ fn sections(folder: &Path, info: &RunInfo, records: &[Row]) -> Result<Vec<Sectio
     Ok(featherbench_studies::sections(info, records).into_iter().chain(catalogue).collect())
 }
 
-/// Prints what was found, and the report's page last.
+/// Prints whether the run passed, what was found and how fast we are, and the report's page last.
 pub fn conclude(info: &RunInfo, records: &[Row], page: &Path, open: bool) -> Result<(), Fail> {
     let sections = featherbench_studies::sections(info, records);
     featherbench_report::summary(info, records, &sections).iter().for_each(|line| say!("{line}"));
-    gate::tell_unmet(info);
     say!("report: {}", page.display());
     show(page, open)?;
     gate::conclude(info, &Findings::of(info, records))

@@ -94,8 +94,10 @@ fn an_external_engine_is_judged_by_what_it_answers() {
     let info = std::fs::read_to_string(sandbox.path("green/run.json")).unwrap();
     assert!(info.contains("\"engine\": \"table\"") && info.contains("\"source\": \"live\""), "its own name and source are kept");
     let wrong = with_table(":", 1.0 + 1e-9);
-    wrong.run(&[&TABLE_RUN[..], &["red"]].concat()).expect(1, &["rows outside their bound", "FAILED: mine, "]);
-    wrong.run(&["gate", "red"]).expect(1, &["rows outside their bound", "FAILED: mine, ", "on 1 robot", "--filter"]);
+    wrong.run(&[&TABLE_RUN[..], &["red"]].concat()).expect(1, &["rows outside their bound", "failed: ", "new: mine, "]);
+    wrong
+        .run(&["gate", "red"])
+        .expect(1, &["rows outside their bound", "failed: ", "beyond their bound", ": mine, ", "on 1 robot", "--filter"]);
 }
 
 /// Numbers that change by a few units in the last place between questions pass every bound, but are not valid answers.
@@ -104,7 +106,16 @@ fn an_external_engine_that_does_not_repeat_itself_is_red() {
     let noise = "if [ -e odd ]; then rm odd; cat noisy.bin; continue; fi; : > odd";
     let sandbox = with_table(noise, 1.0);
     let ended = sandbox.run(&[&TABLE_RUN[..], &["noisy"]].concat());
-    ended.expect(1, &["FAILED: mine, ", "asked twice for id", "units in the last place", "rows outside their bound: expected 0, found 1"]);
+    ended.expect(
+        1,
+        &[
+            "failed: 1 row beyond its bound, 1 new finding",
+            "new: mine, ",
+            "asked twice for id",
+            "units in the last place",
+            "rows outside their bound: expected 0, found 1",
+        ],
+    );
 }
 
 /// No method, or no robot: no row would fail, and the run says so.

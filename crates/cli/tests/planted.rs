@@ -46,8 +46,16 @@ fn alter(folder: &Path, change: impl FnOnce(&mut Vec<featherbench_results::Row>)
 #[test]
 fn a_gate_tells_what_fell_short_in_every_form() {
     let sandbox = with_recordings();
-    run(&sandbox, "out").expect(0, &["passed: ", "report:"]);
-    sandbox.run(&["gate", "out", "--junit", "good.xml"]).expect(0, &["passed: ", "gates met"]);
+    let [ran, gated] = [run(&sandbox, "out"), sandbox.run(&["gate", "out", "--junit", "good.xml"])];
+    ran.expect(0, &["passed: ", "report:"]);
+    gated.expect(0, &["passed: ", "gates met"]);
+    for ended in [&ran, &gated] {
+        // What is known is no part of the verdict.
+        let first = ended.output.lines().next().unwrap();
+        assert!(first.starts_with("passed: ") && first.ends_with(" rows passed, 0 failed"), "{first}");
+        assert!(["pinocchio", "mujoco", "drake", "dart", "featherbench", "off by"].iter().all(|words| !first.contains(words)), "{first}");
+    }
+    assert!(ran.output.lines().last().unwrap().starts_with("report: "), "{ran:?}");
     assert!(std::fs::read_to_string(sandbox.path("good.xml")).unwrap().contains("failures=\"0\""));
 
     // An answer of MuJoCo that is wrong in the third digit, and one of Drake that is wrong in the fourteenth.
@@ -67,13 +75,21 @@ fn a_gate_tells_what_fell_short_in_every_form() {
     assert!(found.iter().any(|found| found["culprit"]["engine"] == "drake" && found["level"] == "rounding"), "{found:?}");
     assert!(found[0]["again"].as_str().unwrap().contains("--filter '^agreement/"), "{found:?}");
     let ended = sandbox.run(&["gate", "out", "--junit", "bad.xml", "--markdown", "bad.md", "--annotations"]);
-    ended.expect(1, &["FAILED: mujoco, inverse dynamics: off by 0.25 %", "::error title=physics differs%3A mujoco", "first: mujoco"]);
+    ended.expect(
+        1,
+        &[
+            "failed: 2 rows beyond their bound",
+            "1. physics differs: mujoco, inverse dynamics: off by 0.25 %",
+            "::error title=physics differs%3A mujoco",
+            "first: mujoco",
+        ],
+    );
     let first = ended.output.lines().position(|line| line.starts_with("  1. physics differs: mujoco")).unwrap();
     assert!(first < ended.output.lines().position(|line| line.contains("rounding: drake")).unwrap(), "{ended:?}");
     let junit = std::fs::read_to_string(sandbox.path("bad.xml")).unwrap();
     assert!(junit.starts_with("<?xml") && junit.contains("type=\"physics differs\"") && junit.contains("name=\"mujoco/"), "{junit}");
     let markdown = std::fs::read_to_string(sandbox.path("bad.md")).unwrap();
-    assert!(markdown.contains("failed: mujoco, inverse dynamics") && markdown.contains("| physics differs | mujoco |"), "{markdown}");
+    assert!(markdown.contains("failed: 2 rows beyond their bound") && markdown.contains("| physics differs | mujoco |"), "{markdown}");
 }
 
 #[test]
@@ -81,7 +97,7 @@ fn missing_engines_are_named_before_what_is_missing_of_them() {
     let sandbox = with_recordings();
     std::fs::remove_dir_all(sandbox.path("recorded")).unwrap();
     std::fs::create_dir(sandbox.path("recorded")).unwrap();
-    run(&sandbox, "out").expect(1, &["FAILED: pinocchio: engine pinocchio answers"]);
+    run(&sandbox, "out").expect(1, &["failed: ", "engines missing", "1. not offered, new: pinocchio: engine pinocchio answers"]);
     let found = new(&sandbox, "out");
     let first: Vec<_> = found.iter().take(3).map(|found| (found["gate"].clone(), found["culprit"]["engine"].clone())).collect();
     assert_eq!(first, ["pinocchio", "mujoco", "drake"].map(|name| (GateKind::Engine.as_str().into(), name.into())));
@@ -93,7 +109,7 @@ fn a_stale_recording_is_named() {
     let sandbox = with_recordings();
     std::fs::copy(sandbox.path("recorded/chain-planar-2.recording"), sandbox.path("recorded/panda.recording")).unwrap();
     run(&sandbox, "out")
-        .expect(1, &["FAILED: ", "panda.recording", "it was recorded for another version of 'panda'", "featherbench record"]);
+        .expect(1, &["failed: ", "panda.recording", "it was recorded for another version of 'panda'", "featherbench record"]);
     let found = new(&sandbox, "out");
     assert_eq!(found[0]["culprit"]["robot"], "panda", "{:?}", found[0]);
     assert!(found[0]["sentence"].as_str().unwrap().contains("panda.recording"), "{:?}", found[0]);

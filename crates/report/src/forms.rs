@@ -43,18 +43,8 @@ pub fn junit(run: &RunInfo, findings: &Findings) -> String {
 
 /// A summary for a workflow's page.
 pub fn markdown(run: &RunInfo, findings: &Findings) -> String {
-    let word = match findings.status {
-        Status::Passed => "passed",
-        Status::Failed => "failed",
-        Status::Empty => "judged nothing",
-    };
-    let mut text = format!(
-        "### Suite {} {word}: {}\n\n{}.\n{}.\n",
-        cell(&run.suite),
-        cell(&findings.headline()),
-        findings.levels(),
-        findings.extent()
-    );
+    let (verdict, levels, extent) = (findings.verdict(), findings.levels(), findings.extent());
+    let mut text = format!("### Suite {} {}\n\n{levels}.\n{extent}.\n", cell(&run.suite), cell(&verdict));
     let mut table = |title: &str, list: &[&Found]| {
         if list.is_empty() {
             return;

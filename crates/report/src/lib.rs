@@ -58,6 +58,6 @@ pub use error::ReportError;
 pub use findings::{Findings, Found, Status};
 pub use overview::{EVERYONE, Overview, Pages, Robot, robot_chunk};
 pub use section::{Finding, Mark, Part, Section, Shown};
-pub use summary::summary;
+pub use summary::{summary, unmet};
 pub use tally::{Tally, worst_first};
 pub use write::{ReportPaths, write};

@@ -48,6 +48,12 @@ pub fn grouped(number: usize) -> String {
     text
 }
 
+/// A text as the beginning of a sentence.
+pub fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// Names in a sentence: `a`, `a and b`, `a, b and c`.
 pub fn listed(names: &[String]) -> String {
     match names {
@@ -79,5 +85,6 @@ mod tests {
         assert_eq!((count(1, "row"), count(0, "row")), ("1 row".into(), "0 rows".into()));
         assert_eq!((count(1, "body"), count(2, "body"), count(2, "key")), ("1 body".into(), "2 bodies".into(), "2 keys".into()));
         assert_eq!(listed(&["a".into(), "b".into(), "c".into()]), "a, b and c");
+        assert_eq!(["all known", "1 row", ""].map(capitalised), ["All known", "1 row", ""]);
     }
 }

@@ -38,7 +38,7 @@ pub fn render(mut runs: Vec<Past>) -> String {
     }
     let body = html! {
         section #runs {
-            h1 { (count(runs.len(), "run")) @if let Some(last) = findings.last() { ", the last: " (last.headline()) } }
+            h1 { (count(runs.len(), "run")) @if let Some(last) = findings.last() { ", the last: " (last.meaning()) } }
             (table(&runs, &findings))
         }
         @for suite in suites {

@@ -4,12 +4,12 @@ use featherbench_results::{Row, RunInfo, Severity, Verdict};
 use maud::{Markup, html};
 
 use crate::blocks::{self, opener};
-use crate::cards::{card, class, headline};
+use crate::cards::{card, class};
 use crate::chunks::UNPASSED;
 use crate::drawings::Drawings;
 use crate::findings::{Findings, Status};
 use crate::labels;
-use crate::numbers::{count, decades, grouped};
+use crate::numbers::{capitalised, count, decades, grouped};
 use crate::overview::Overview;
 use crate::section::{Part, Section};
 use crate::tally::{BY_GRAVITY, Tally, worst_first};
@@ -37,15 +37,14 @@ fn body(
     let mut added: Vec<_> = sections.iter().filter_map(|section| section.finding.as_ref()).collect();
     added.sort_by_key(|finding| finding.rank);
     let (class, word) = match findings.status {
-        Status::Passed if findings.found.is_empty() => ("good", "Passed"),
-        Status::Passed => ("good", "Passed: every finding is known"),
+        Status::Passed => ("good", "Passed"),
         Status::Failed => ("bad", "Failed"),
-        Status::Empty => ("void", "Empty"),
+        Status::Empty => ("void", "Nothing judged"),
     };
     html! {
         section #verdict class={ "verdict " (class) } {
             p.stamp { span.glyph aria-hidden="true" { (match findings.status { Status::Passed => "✓", Status::Failed => "✕", Status::Empty => "·" }) } (word) }
-            h1 { (headline(drawings, findings)) }
+            h1 { (capitalised(&findings.meaning())) }
             (tiles(findings))
             (list(drawings, findings))
             @if let Some(part) = rest {
