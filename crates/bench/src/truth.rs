@@ -148,16 +148,16 @@ pub fn conditioning_bound(robot: &Robot, k: usize) -> Option<f64> {
         a: vec![Dual::zero(); states.nv],
         moved: vec![0.0; states.nv],
     };
-    (0..states.nq).try_for_each(|i| inputs.move_by_itself(|inputs| &mut inputs.q[i]))?;
-    (0..states.nv).try_for_each(|i| inputs.move_by_itself(|inputs| &mut inputs.v[i]))?;
-    (0..states.nv).try_for_each(|i| inputs.move_by_itself(|inputs| &mut inputs.tau[i]))?;
-    (0..states.nv).try_for_each(|i| inputs.move_by_itself(|inputs| &mut inputs.model.armature[i]))?;
+    (0..states.nq).try_for_each(|i| inputs.move_by_itself(&|inputs| &mut inputs.q[i]))?;
+    (0..states.nv).try_for_each(|i| inputs.move_by_itself(&|inputs| &mut inputs.v[i]))?;
+    (0..states.nv).try_for_each(|i| inputs.move_by_itself(&|inputs| &mut inputs.tau[i]))?;
+    (0..states.nv).try_for_each(|i| inputs.move_by_itself(&|inputs| &mut inputs.model.armature[i]))?;
     for parameter in parameters::<Number>() {
-        (0..robot.model.topology.bodies()).try_for_each(|body| inputs.move_by_itself(|inputs| parameter(&mut inputs.model, body)))?;
+        (0..robot.model.topology.bodies()).try_for_each(|body| inputs.move_by_itself(&|inputs| parameter(&mut inputs.model, body)))?;
     }
-    inputs.move_by_itself(|inputs| &mut inputs.model.gravity.x)?;
-    inputs.move_by_itself(|inputs| &mut inputs.model.gravity.y)?;
-    inputs.move_by_itself(|inputs| &mut inputs.model.gravity.z)?;
+    inputs.move_by_itself(&|inputs| &mut inputs.model.gravity.x)?;
+    inputs.move_by_itself(&|inputs| &mut inputs.model.gravity.y)?;
+    inputs.move_by_itself(&|inputs| &mut inputs.model.gravity.z)?;
     let square = |x: f64| x * x;
     let moved = inputs.moved.iter().copied().map(square).sum::<f64>().sqrt();
     let answer = inputs.a.iter().map(|a| square(a.value)).sum::<f64>().sqrt();
@@ -179,7 +179,7 @@ struct Inputs {
 
 impl Inputs {
     /// Changes one input at the rate of its own magnitude. An input that is zero is exact and does not change.
-    fn move_by_itself(&mut self, input: impl Fn(&mut Self) -> &mut Number) -> Option<()> {
+    fn move_by_itself(&mut self, input: &dyn Fn(&mut Self) -> &mut Number) -> Option<()> {
         let rate = input(self).value.abs();
         if rate == 0.0 {
             return Some(());

@@ -25,9 +25,11 @@
 //! | `featherbench_learning` | models learned from motions, and their scores | a learned model |
 //! | `featherbench_uncertainty` | what uncertain parameters do to the dynamics | a distribution, a method |
 //! | `featherbench_results` | the row: its columns, files, differences of runs | a column |
+//! | `featherbench_parquet` | rows as Parquet, logs in Parquet as CSV; a program that the command builds when it is asked for Parquet | – |
 //! | `featherbench_protocol` | messages to an oracle, and its process | – |
 //! | `featherbench_bench` | suite, cell, run, store, measures, gates; the traits `Engine` and `Study` | a measure of an error |
-//! | `featherbench_engines` | the engines: ours, an oracle process, recorded answers; the conformance test | a way to reach an engine |
+//! | `featherbench_kernels` | our engine: which kernel answers which quantity | a kernel's line |
+//! | `featherbench_engines` | the other engines: an oracle process, recorded answers; the conformance test | a way to reach an engine |
 //! | `featherbench_studies` | one folder per study, with its sections of the report | a study, a section, a plot |
 //! | `featherbench_report` | the frame of the report, and what sections are built of; it knows no study | a building block of pages |
 //! | `oracles/` | the programs of the reference engines, in Python, C++ and Rust | an engine |
@@ -63,6 +65,7 @@ mod offers;
 mod oracles;
 mod outcome;
 mod package;
+mod parquet;
 mod patience;
 mod plan;
 mod progress;

@@ -25,10 +25,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("continua", &["spatial", "model", "dynamics"]),
     ("lesson", &["spatial", "model", "robots", "dynamics", "contact", "constrained", "hybrid", "residuals", "identification"]),
     ("results", &[]),
+    // The only crate that compiles `parquet`; no crate may use it: the command starts its program.
+    ("parquet", &["results"]),
     ("report", &["results"]),
     ("protocol", &["spatial", "model"]),
     ("bench", &["spatial", "model", "robots", "formats", "dynamics", "scenes", "residuals", "results", "protocol"]),
-    ("engines", &["spatial", "model", "robots", "formats", "dynamics", "scenes", "residuals", "results", "protocol", "bench"]),
+    ("kernels", &["spatial", "model", "robots", "dynamics", "results", "bench"]),
+    ("engines", &["spatial", "model", "robots", "formats", "dynamics", "scenes", "residuals", "results", "protocol", "bench", "kernels"]),
     (
         "studies",
         &[
@@ -132,10 +135,47 @@ fn nothing_points_back() {
 
 /// The names of all packages that one depends on through normal dependencies, directly or not, and its own.
 fn reached(package: &str) -> BTreeSet<String> {
-    let text = cargo(&["tree", "--offline", "--edges", "normal", "--prefix", "none", "--package", package]);
+    reached_by(package, "normal")
+}
+
+/// The same through these kinds of dependencies.
+fn reached_by(package: &str, kinds: &str) -> BTreeSet<String> {
+    let text = cargo(&["tree", "--offline", "--edges", kinds, "--prefix", "none", "--package", package]);
     let names: BTreeSet<String> = text.lines().filter_map(|line| line.split_whitespace().next()).map(str::to_owned).collect();
     assert!(names.contains(package), "cargo tree says nothing about {package}: {text}");
     names
+}
+
+/// What is compiled before the command answers has no Parquet in it, nor what comes with that.
+#[test]
+fn the_command_is_compiled_without_parquet() {
+    let refused = ["parquet", "arrow", "chrono", "half", "num-bigint", "zerocopy"];
+    let of = |package| refused.into_iter().filter(|name| reached_by(package, "normal,build").contains(*name)).collect::<Vec<_>>();
+    assert_eq!(of("featherbench"), [""; 0]);
+    // The crate that may have them has them: so the search works.
+    assert!(of("featherbench-parquet").starts_with(&["parquet"]));
+}
+
+/// `cargo run` has one program, and `cargo bench` every benchmark. What only some commands need is built when they are called.
+#[test]
+fn the_command_is_what_cargo_builds_by_default() {
+    #[derive(Deserialize)]
+    struct Default {
+        workspace_default_members: Vec<String>,
+    }
+    let output = cargo(&["metadata", "--offline", "--no-deps", "--format-version", "1"]);
+    let members = serde_json::from_str::<Default>(&output).unwrap().workspace_default_members;
+    let is = |folder: &str| members.iter().any(|member| member.contains(&format!("/crates/{folder}#")));
+    assert!(is("cli") && !is("parquet"), "{members:?}");
+    for entry in std::fs::read_dir("..").unwrap() {
+        let folder = entry.unwrap().path();
+        let name = folder.file_name().unwrap().to_str().unwrap();
+        assert!(is(name) || !folder.join("benches").exists(), "`cargo bench` leaves out {name}");
+        let manifest = std::fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        // Criterion has arguments that a program of tests does not know.
+        let targets = usize::from(folder.join("src/lib.rs").exists()) + manifest.matches("[[bin]]").count();
+        assert_eq!(manifest.matches("\nbench = false\n").count(), targets, "{name}: its library and programs are no benchmarks");
+    }
 }
 
 /// The packages for reading or writing files on which one package depends: serde, packages named after it, and parsers.

@@ -66,7 +66,7 @@ pub use reproductions::{Reproduce, Reproductions};
 pub use scaling::{Scaling, Settings as ScalingSettings};
 pub use steps::Steps;
 pub use sweep::reduce;
-pub use timing::{InstructionCounts, Kernels, Settings as TimingSettings, Timing, instructions, multiply_adds_per_ns};
+pub use timing::{InstructionCounts, Kernels, Settings as TimingSettings, Timing, instructions};
 
 use featherbench_bench::alone::Ask;
 use featherbench_bench::{Cell, Context, Engine, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study, Suite};

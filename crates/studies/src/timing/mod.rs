@@ -29,7 +29,6 @@ use crate::{Made, Setup};
 use featherbench_bench::{Cell, Context, Engine, Finished, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study};
 use featherbench_results::Row;
 use featherbench_robots::{Random, StateBatch};
-pub use machine::multiply_adds_per_ns;
 use machine::{Machine, Pinned};
 use protocol::{Budget, Ready};
 use samples::Candidate;

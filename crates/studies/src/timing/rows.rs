@@ -1,6 +1,6 @@
 //! Rows of the outcomes of a robot's cells.
 
-use super::machine::{LANES, Machine};
+use super::machine::Machine;
 use super::samples::{Candidate, Samples, outcome_samples};
 use super::statistics::{CONTROL_LEVEL, Estimate, Finding, LEVEL};
 use super::{CHECK, EXPERIMENT, MACHINE, OVERHEAD, REFERENCE, check};
@@ -9,6 +9,7 @@ use featherbench_bench::measure::worst;
 use featherbench_bench::{Cell, Finished, Gates, NoAnswer, Outcome, Robot};
 use featherbench_results::{Kind, Relation, Row, Verdict, canonical_json};
 use featherbench_robots::Random;
+use featherbench_spatial::peak::LANES;
 use serde_json::{Value, json};
 
 /// An experiment whose A/A ratio is bad is not valid. If more than one in this number of a robot's A/A ratios is bad, none of its times is.

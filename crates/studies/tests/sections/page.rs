@@ -263,7 +263,7 @@ fn a_report_is_a_pure_function() {
 #[test]
 fn an_empty_run_says_so() {
     let written = report(&RunInfo::default(), &[]);
-    assert!(written.section("verdict").contains("Nothing was judged"));
+    assert!(written.section("verdict").contains("Nothing judged"));
     for (id, words) in [
         ("agreement", "no rows of agreement"),
         ("depth", "no errors"),
@@ -301,10 +301,7 @@ fn sentences_tell_who_agrees_and_who_does_not() {
     let engines = RunInfo { engines: made_up::run_info().engines, ..RunInfo::default() };
     let written = report(&engines, &rows);
     let verdict = written.section("verdict");
-    assert!(
-        verdict.contains("<h1><a href=\"engines/mujoco.html\">mujoco</a>, inverse dynamics: 3.0 digits lost beyond rounding"),
-        "{verdict}"
-    );
+    assert!(verdict.contains("<h1>1 row beyond its bound, "), "{verdict}");
     assert!(
         verdict.contains("mujoco and drake agree with featherbench on") && verdict.contains("(2e-15)") && verdict.contains("over 2 robots")
     );
@@ -317,7 +314,7 @@ fn sentences_tell_who_agrees_and_who_does_not() {
     assert!(written.section("unpassed").contains("1e-11 is not at most 1e-14"));
 
     let good = report(&RunInfo::default(), &rows[..5]);
-    assert!(good.section("verdict").contains("No engine misses a gate"));
+    assert!(good.section("verdict").contains("<h1>No deviations, "));
     let expected = Expectation::new(GateKind::Counts, "id".into(), 2, 1).because("one is missing".into());
     let short = report(&RunInfo { expected: vec![expected], ..RunInfo::default() }, &rows[..5]);
     assert!(short.section("verdict").contains("verdict bad") && short.section("verdict").contains("one is missing"));

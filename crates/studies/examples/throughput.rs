@@ -1,8 +1,8 @@
 //! Throughput of batches: what single precision and all cores gain, and the share of the operations' limit as the robot grows.
 //!
 //! ```text
-//! cargo bench -p featherbench-studies --bench throughput            # about two minutes
-//! cargo bench -p featherbench-studies --bench throughput -- --test  # small, once: a test
+//! cargo run --release -p featherbench-studies --features measurements --example throughput            # about two minutes
+//! cargo run --release -p featherbench-studies --features measurements --example throughput -- --test  # small, once
 //! ```
 //!
 //! Two ways are called in turn. A ratio is that of their shortest times; beside it stands the median of the ratios of neighbours. Ten thousand
@@ -15,7 +15,7 @@
 use featherbench_dynamics::{Batch, BatchError, Number, to_lanes};
 use featherbench_model::Model;
 use featherbench_robots::{Family, StateBatch};
-use featherbench_studies::multiply_adds_per_ns;
+use featherbench_spatial::peak::multiply_adds_per_ns;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -35,7 +35,6 @@ struct Size {
 }
 
 fn main() {
-    // cargo passes `--bench` to a bench, and nothing to a test of it.
     let test = std::env::args().any(|argument| argument == "--test");
     let size = if test { Size { states: 100, rounds: 1, longest: 36 } } else { Size { states: 10_000, rounds: 15, longest: 10_000 } };
     println!("{:<30}{:<20}{:>14}{:>10}{:>16}{:>10}", "robot", "", "f64 over f32", "median", "one core over", "median");
