@@ -18,15 +18,18 @@ macro_rules! by_kind {
     ($scalar:ty, $kind:expr, $step:expr, $($argument:expr),+ $(,)?) => {{
         use featherbench_model::Axis::{Skew, Z};
         use featherbench_model::JointKind::{Free, Helical, Prismatic, Revolute, Spherical};
-        match $kind {
-            kind if cfg!(debug_assertions) || <$scalar as featherbench_spatial::Real>::COMPACT => $crate::step::arm!($step(kind, $($argument),+)),
-            Revolute(Z) => $crate::step::arm!($step(Revolute(Z), $($argument),+)),
-            Revolute(Skew) => $crate::step::arm!($step(Revolute(Skew), $($argument),+)),
-            Prismatic(Z) => $crate::step::arm!($step(Prismatic(Z), $($argument),+)),
-            Prismatic(Skew) => $crate::step::arm!($step(Prismatic(Skew), $($argument),+)),
-            Helical => $crate::step::arm!($step(Helical, $($argument),+)),
-            Spherical => $crate::step::arm!($step(Spherical, $($argument),+)),
-            Free => $crate::step::arm!($step(Free, $($argument),+)),
+        if cfg!(debug_assertions) || <$scalar as featherbench_spatial::Real>::COMPACT {
+            $crate::step::arm!($step($kind, $($argument),+))
+        } else {
+            match $kind {
+                Revolute(Z) => $crate::step::arm!($step(Revolute(Z), $($argument),+)),
+                Revolute(Skew) => $crate::step::arm!($step(Revolute(Skew), $($argument),+)),
+                Prismatic(Z) => $crate::step::arm!($step(Prismatic(Z), $($argument),+)),
+                Prismatic(Skew) => $crate::step::arm!($step(Prismatic(Skew), $($argument),+)),
+                Helical => $crate::step::arm!($step(Helical, $($argument),+)),
+                Spherical => $crate::step::arm!($step(Spherical, $($argument),+)),
+                Free => $crate::step::arm!($step(Free, $($argument),+)),
+            }
         }
     }};
 }
