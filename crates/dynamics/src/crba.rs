@@ -76,6 +76,7 @@ impl<T: Real> Crba<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
+    #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], matrix: &mut TreeSparse<T>) -> Result<(), DimensionError> {
         self.recurse::<P, false>(model, q, matrix)
     }

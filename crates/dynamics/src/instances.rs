@@ -7,26 +7,29 @@
 //!
 //! | instances over `f64` | beside the library and its tests, called by |
 //! |---|---|
-//! | [`Rnea`], [`Aba`] | bench, constrained, contact, continua, residuals, uncertainty |
+//! | [`Rnea`], [`Aba`], [`Crba`] | bench, constrained, contact, continua, residuals, uncertainty |
 //! | [`Bias`], [`Kinematics`], [`Jacobian`] | constrained, contact, continua, learning |
 //! | [`Ltdl`] | bench, constrained, kernels, uncertainty |
 //! | [`IdDerivatives`], [`FdDerivatives`], [`Coriolis`] | kernels, lesson, uncertainty |
 //! | [`Regressor`] | identification, kernels, uncertainty |
 
 use crate::{
-    Aba, Bias, CenterOfMass, Coriolis, Energy, FdDerivatives, IdDerivatives, Jacobian, Kinematics, Ltdl, Momentum, Regressor, Rnea,
+    Aba, Bias, CenterOfMass, Coriolis, Crba, Energy, FdDerivatives, IdDerivatives, Jacobian, Kinematics, Ltdl, Momentum, Regressor, Rnea,
 };
 use featherbench_model::Model;
 
-/// The entry points, as addresses: naming one compiles it.
+/// The entry points, as addresses: naming one compiles it. A function that may be inlined is compiled where it is called, and this one is
+/// called nowhere. Then a crate that is compiled with less optimisation would compile them for all.
 #[doc(hidden)]
-pub fn instances() -> [*const (); 20] {
+#[inline(never)]
+pub fn instances() -> [*const (); 21] {
     [
         Model::<f64>::build as *const (),
         Rnea::<f64>::run::<f64> as *const (),
         Bias::<f64>::run::<f64> as *const (),
         Aba::<f64>::run::<f64> as *const (),
         Aba::<f64>::solve::<f64> as *const (),
+        Crba::<f64>::run::<f64> as *const (),
         Kinematics::<f64>::run::<f64> as *const (),
         Jacobian::<f64>::run::<f64> as *const (),
         CenterOfMass::<f64>::run::<f64> as *const (),
