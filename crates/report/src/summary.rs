@@ -8,9 +8,12 @@ use crate::section::Section;
 /// The number of findings.
 const TOLD: usize = 3;
 
-/// The lines at the end of a run: whether it passed, and what that means in numbers; the findings that weigh most, each marked as known or new;
-/// how many of each level there are, among how many rows; the gates that are not met; the lines of the sections, among them how fast we are. Of a
-/// run that failed, the findings that turned the gate red come first.
+/// The lines at the end of a run, in this order:
+/// 1. whether it passed, and what that means in numbers;
+/// 2. the findings that weigh most, each marked as known or new. Of a run that failed, those that turned the gate red come first;
+/// 3. how many findings of each level there are, among how many rows;
+/// 4. the gates that are not met;
+/// 5. the lines of the sections, among them how fast we are.
 ///
 /// ```
 /// use featherbench_report::summary;
