@@ -72,6 +72,7 @@ pub mod run;
 mod scene_engine;
 mod semidefinite;
 pub mod shard;
+pub mod statistics;
 mod stepper;
 mod store;
 mod study;

@@ -11,4 +11,5 @@ mod measures;
 mod normalised;
 mod properties;
 mod resume;
+mod statistics;
 mod truth;

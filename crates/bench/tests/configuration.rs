@@ -199,7 +199,7 @@ fn counts_name_what_is_wrong() {
 /// The repository's own files and all its suites are valid.
 #[test]
 fn our_own_files_are_right() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
     let engines = Engines::read(&root.join("oracles/engines.toml")).unwrap();
     let gates = Gates::read(&root.join("ci"), &engines).unwrap();
     for known in gates.deviations().iter().filter(|known| known.is_measured()) {
@@ -354,7 +354,7 @@ fn engines_name_what_is_wrong() {
 
 #[test]
 fn the_engines_of_the_project_are_described() {
-    let oracles = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../oracles");
+    let oracles = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../oracles");
     let engines = Engines::read(&oracles.join("engines.toml")).unwrap();
     let names = engines.names(|_| true);
     let all = [

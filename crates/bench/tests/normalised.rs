@@ -19,7 +19,7 @@ const GATE: f64 = 1e-14;
 const WIDE: f64 = 1e-28;
 
 fn panda() -> Description {
-    featherbench_formats::neutral::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../datasets/models/panda.json")).unwrap()
+    featherbench_formats::neutral::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../datasets/models/panda.json")).unwrap()
 }
 
 fn generated(spec: &str) -> Description {

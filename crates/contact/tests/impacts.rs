@@ -65,26 +65,31 @@ fn processes_agree_with_small_steps() {
 }
 
 fn small_steps(problem: &Problem, law: Law, e: f64, friction: f64) -> DVector<f64> {
-    let g = problem.delassus();
-    let mut c = problem.free().clone();
-    let step = 1e-5 * -c[0] / g[(0, 0)];
+    let (g, free) = (problem.delassus(), problem.free());
+    let g = [[g[(0, 0)], g[(0, 1)]], [g[(1, 0)], g[(1, 1)]]];
+    let (mut normal, mut slip) = (free[0], free[1]);
+    let step = 1e-5 * -normal / g[0][0];
     let (mut impulse, mut work, mut compression) = (0.0, 0.0, None);
     loop {
         // Friction that stops the slip within this step, if the cone allows it.
-        let stopping = (-(c[1] / step) - g[(1, 0)]) / g[(1, 1)];
+        let stopping = (-(slip / step) - g[1][0]) / g[1][1];
         let ratio = stopping.clamp(-friction, friction);
-        let next = &c + g * DVector::from_vec(vec![1.0, ratio]) * step;
-        work += 0.5 * step * (c[0] + next[0]);
+        let next = normal + (g[0][0] + g[0][1] * ratio) * step;
+        work += 0.5 * step * (normal + next);
         impulse += step;
-        c = next;
-        match compression {
-            None if c[0] >= 0.0 => compression = Some((impulse, work)),
-            Some((compressed, _)) if law == Law::Poisson && impulse >= (1.0 + e) * compressed => return c,
-            Some((_, done)) if law == Law::Stronge && work >= done * (1.0 - e * e) => return c,
-            _ => {}
-        }
-        if e == 0.0 && compression.is_some() {
-            return c;
+        normal = next;
+        slip += (g[1][0] + g[1][1] * ratio) * step;
+        let ends = match compression {
+            None if normal >= 0.0 => {
+                compression = Some((impulse, work));
+                e == 0.0
+            }
+            None => false,
+            Some((compressed, _)) if law == Law::Poisson => impulse >= (1.0 + e) * compressed,
+            Some((_, done)) => law == Law::Stronge && work >= done * (1.0 - e * e),
+        };
+        if ends {
+            return DVector::from_vec(vec![normal, slip]);
         }
     }
 }

@@ -18,7 +18,7 @@ fn every_case_comes_back() {
 /// The files of `datasets/contact` hold the cases of the library. Numbers may differ by a few ulps: sines differ between platforms.
 #[test]
 fn the_dataset_is_the_library() {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../datasets/contact");
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../datasets/contact");
     let cases = library::all().unwrap();
     for problem in &cases {
         let kept = file::read(folder.join(format!("{}.json", problem.name()))).unwrap();

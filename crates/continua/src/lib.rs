@@ -54,6 +54,8 @@ pub use material::{Defect, Material, Refused, Rod, Section, Strain};
 pub use modes::{Modes, generalized, modes};
 pub use passivity::{Passivity, collocation, passivity};
 pub use rigid::{RigidLimit, rigid_limit};
+#[doc(hidden)]
+pub use solver::instances;
 pub use solver::{Load, Motion, SolveError, Solver, energies, momentum};
 pub use statics::{Equilibrium, Settings, Status, equilibrium, judge, newton};
 pub use tangent::{mass_matrix, residual, tangent_stiffness};

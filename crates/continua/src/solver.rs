@@ -169,6 +169,7 @@ where
     ///
     /// # Errors
     /// [`SolveError`] when an argument does not fit, or a load acts on no body.
+    #[inline(never)]
     pub fn inverse(
         &mut self,
         continuum: &Continuum,
@@ -192,6 +193,7 @@ where
     ///
     /// # Errors
     /// [`DimensionError`] when an argument does not fit.
+    #[inline(never)]
     pub fn mass_times(&mut self, continuum: &Continuum, s: &[T], second: &[T], product: &mut [T]) -> Result<(), DimensionError> {
         DimensionError::expect("product with M", continuum.topology().nv(), product.len())?;
         let zeros = std::mem::take(&mut self.zeros);
@@ -214,6 +216,7 @@ where
     ///
     /// # Errors
     /// [`DimensionError`] when `s` does not fit.
+    #[inline(never)]
     pub fn mass(&mut self, continuum: &Continuum, s: &[T]) -> Result<TreeSparse<T>, DimensionError> {
         let nv = continuum.topology().nv();
         if continuum.is_direct() {
@@ -242,6 +245,7 @@ where
     ///
     /// # Errors
     /// [`SolveError`] when an argument does not fit, a load acts on no body, or M is not positive definite.
+    #[inline(never)]
     pub fn forward(
         &mut self,
         continuum: &Continuum,
@@ -298,6 +302,13 @@ where
         }
         Ok(self.mass.solve(second)?)
     }
+}
+
+/// The dynamics that are compiled here, once, as addresses: for motions whose loads others choose.
+#[doc(hidden)]
+#[inline(never)]
+pub fn instances() -> [*const (); 2] {
+    [Solver::<f64>::forward as *const (), Solver::<Dual<f64>>::forward as *const ()]
 }
 
 /// Kinetic and gravitational energy of a reduced state, with the elastic energy in the potential; it allocates.

@@ -12,11 +12,19 @@
 //! | [`Ltdl`] | bench, constrained, kernels, uncertainty |
 //! | [`IdDerivatives`], [`FdDerivatives`], [`Coriolis`] | kernels, lesson, uncertainty |
 //! | [`Regressor`] | identification, kernels, uncertainty |
+//!
+//! Tests are compiled without optimisation. A debug build has more instances, so that their long sums are fast: those over double-double, duals
+//! and duals of these, which the crate `bench` calls as well.
 
 use crate::{
     Aba, Bias, CenterOfMass, Coriolis, Crba, Energy, FdDerivatives, IdDerivatives, Jacobian, Kinematics, Ltdl, Momentum, Regressor, Rnea,
 };
 use featherbench_model::Model;
+#[cfg(debug_assertions)]
+use {
+    featherbench_spatial::{Counted, DoubleDouble, Dual},
+    wide::f64x4,
+};
 
 /// The entry points, as addresses: naming one compiles it. A function that may be inlined is compiled where it is called, and this one is
 /// called nowhere. Then a crate that is compiled with less optimisation would compile them for all.
@@ -46,4 +54,32 @@ pub fn instances() -> [*const (); 21] {
         Regressor::<f64>::torque::<f64> as *const (),
         Regressor::<f64>::energy::<f64> as *const (),
     ]
+}
+
+/// Kernels over another scalar, as addresses.
+#[cfg(debug_assertions)]
+macro_rules! over {
+    ($($scalar:ty),*) => {
+        [$(
+            [
+                Rnea::<$scalar>::run::<f64> as *const (),
+                Rnea::<$scalar>::run::<$scalar> as *const (),
+                Bias::<$scalar>::run::<f64> as *const (),
+                Aba::<$scalar>::run::<f64> as *const (),
+                Aba::<$scalar>::run::<$scalar> as *const (),
+                Crba::<$scalar>::run::<f64> as *const (),
+                Ltdl::<$scalar>::factor as *const (),
+                Ltdl::<$scalar>::solve as *const (),
+            ],
+        )*]
+    };
+}
+
+/// What tests call besides.
+#[cfg(debug_assertions)]
+#[doc(hidden)]
+#[inline(never)]
+pub fn instances_of_tests() -> ([[*const (); 8]; 5], [*const (); 2]) {
+    let lanes = [Ltdl::<f64x4>::factor as *const (), Ltdl::<f64x4>::solve as *const ()];
+    (over!(Counted, Dual<f64>, Dual<Dual<f64>>, DoubleDouble, Dual<DoubleDouble>), lanes)
 }

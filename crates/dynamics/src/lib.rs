@@ -110,6 +110,9 @@ pub use error::{DimensionError, Error, NotPositiveDefinite};
 pub use floating_base::{BaseBlocks, FloatingBase, NoFloatingBase, PartitionError};
 #[doc(hidden)]
 pub use instances::instances;
+#[cfg(debug_assertions)]
+#[doc(hidden)]
+pub use instances::instances_of_tests;
 pub use jacobian::{Jacobian, jacobian};
 pub use kinematics::{BodyMotion, Kinematics, forward_kinematics};
 pub use ltdl::{Ltdl, ParallelLtdl};

@@ -49,7 +49,7 @@ fn invariants(axes: &[[Vec3<f64>; 2]]) -> Vec<Option<f64>> {
 #[test]
 fn arms_are_those_of_robot_files() {
     for (arm, joints) in [(Arm::ur5(), 6), (Arm::panda(), 7)] {
-        let file = format!("{}/../../datasets/models/{}.json", env!("CARGO_MANIFEST_DIR"), arm.name);
+        let file = format!("{}/../../../datasets/models/{}.json", env!("CARGO_MANIFEST_DIR"), arm.name);
         let theirs = invariants(&axes(&neutral::read(&file).unwrap(), joints));
         let ours = invariants(&axes(&arm.describe(Gravity::Parallel, 1), joints));
         assert_eq!(theirs.len(), 2 * (joints - 1) + joints - 2);

@@ -72,33 +72,33 @@ impl Chebyshev {
         self.exponents.is_empty()
     }
 
-    /// T_e and T_e′ of each variable, e = 0…d. T_{e+1} = 2x T_e − T_{e−1}.
-    fn single(&self, x: &[f64]) -> Vec<Vec<[f64; 2]>> {
-        let of = |(range, &x): (&Range, &f64)| {
+    /// T_e and T_e′ of each variable, e = 0…d, variable after variable. T_{e+1} = 2x T_e − T_{e−1}.
+    fn single(&self, x: &[f64]) -> Vec<[f64; 2]> {
+        let mut all = Vec::with_capacity(self.ranges.len() * (self.degree + 1));
+        for (range, &x) in self.ranges.iter().zip(x) {
             let [x, factor] = range.scaled(x);
-            let mut rows: Vec<[f64; 2]> = vec![[1.0, 0.0], [x, 1.0]];
-            for e in 2..=self.degree {
-                let ([t, dt], [before, d_before]) = (rows[e - 1], rows[e - 2]);
-                rows.push([2.0 * x * t - before, 2.0 * t + 2.0 * x * dt - d_before]);
+            let (mut before, mut now) = ([1.0, 0.0], [x, 1.0]);
+            for _ in 0..=self.degree {
+                all.push([before[0], before[1] * factor]);
+                (before, now) = (now, [2.0 * x * now[0] - before[0], 2.0 * now[0] + 2.0 * x * now[1] - before[1]]);
             }
-            rows.iter().map(|[t, dt]| [*t, dt * factor]).collect()
-        };
-        self.ranges.iter().zip(x).map(of).collect()
+        }
+        all
     }
 
     /// The values of all products at x, one number per variable.
     pub fn values(&self, x: &[f64]) -> Vec<f64> {
         let single = self.single(x);
-        let product = |exponents: &Vec<usize>| exponents.iter().zip(&single).map(|(&e, row)| row[e][0]).product();
-        self.exponents.iter().map(product).collect()
+        let rows = || single.chunks_exact(self.degree + 1);
+        self.exponents.iter().map(|exponents| exponents.iter().zip(rows()).map(|(&e, row)| row[e][0]).product()).collect()
     }
 
     /// The values of all products at x, and their derivatives by each variable.
     pub fn gradients(&self, x: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
         let single = self.single(x);
         let product = |exponents: &[usize], by: Option<usize>| -> f64 {
-            let factor = |(k, (&e, row)): (usize, (&usize, &Vec<[f64; 2]>))| row[e][usize::from(by == Some(k))];
-            exponents.iter().zip(&single).enumerate().map(factor).product()
+            let factor = |(k, (&e, row)): (usize, (&usize, &[[f64; 2]]))| row[e][usize::from(by == Some(k))];
+            exponents.iter().zip(single.chunks_exact(self.degree + 1)).enumerate().map(factor).product()
         };
         let all = |by: Option<usize>| self.exponents.iter().map(|exponents| product(exponents, by)).collect::<Vec<f64>>();
         (all(None), (0..x.len()).map(|k| all(Some(k))).collect())

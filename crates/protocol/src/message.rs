@@ -78,7 +78,8 @@ impl Message {
         let mut bytes = Value::Object(header).to_string().into_bytes();
         bytes.push(b'\n');
         for block in &self.blocks {
-            bytes.extend(block.data.iter().flat_map(|x| x.to_le_bytes()));
+            bytes.reserve(8 * block.data.len());
+            block.data.iter().for_each(|x| bytes.extend_from_slice(&x.to_le_bytes()));
         }
         bytes
     }

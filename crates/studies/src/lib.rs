@@ -69,6 +69,7 @@ pub use sweep::reduce;
 pub use timing::{InstructionCounts, Kernels, Settings as TimingSettings, Timing, instructions};
 
 use featherbench_bench::alone::Ask;
+use featherbench_bench::statistics::quantile;
 use featherbench_bench::{Cell, Context, Engine, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study, Suite};
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
@@ -222,26 +223,4 @@ fn asked(engine: &dyn Engine, robot: &Robot, quantity: Quantity, method: &str) -
     let (values, due) = (prepared.read().to_vec(), count * quantity.size(robot));
     // Otherwise fewer states would be compared without notice.
     if values.len() == due { Ok(values) } else { Err(NoAnswer::Failed(format!("{} numbers came, {due} are due", values.len()))) }
-}
-
-/// The value below which a fraction of the sorted samples is.
-fn quantile(sorted: &[f64], fraction: f64) -> f64 {
-    let at = fraction * (sorted.len().saturating_sub(1)) as f64;
-    let (low, high) = (at.floor() as usize, at.ceil() as usize);
-    match (sorted.get(low), sorted.get(high)) {
-        (Some(a), Some(b)) => a + (b - a) * at.fract(),
-        _ => f64::NAN,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantiles_interpolate() {
-        let sorted = [1.0, 2.0, 3.0, 4.0, 5.0];
-        assert_eq!([0.0, 0.1, 0.5, 1.0].map(|f| quantile(&sorted, f)), [1.0, 1.4, 3.0, 5.0]);
-        assert!(quantile(&[], 0.5).is_nan());
-    }
 }

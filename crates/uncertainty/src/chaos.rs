@@ -50,34 +50,57 @@ pub fn chaos<R: Response>(space: &Space, response: &R, order: usize) -> Result<C
     // The values of all polynomials at the nodes of each direction.
     let values: Vec<Vec<Vec<f64>>> =
         polynomials.iter().zip(&rules).map(|(known, rule)| rule.nodes.iter().map(|t| known.orthonormal(order, *t)).collect()).collect();
-    let digit = |node: usize, i: usize| node / (order + 1).pow(i as u32) % (order + 1);
+    let basis = Basis { order, variables, nodes, rules, values };
     let mut germs = vec![0.0; variables];
     let answers = at_each(response, nodes, |node, x| {
-        germs.iter_mut().enumerate().for_each(|(i, t)| *t = rules[i].nodes[digit(node, i)]);
+        germs.iter_mut().enumerate().for_each(|(i, t)| *t = basis.rules[i].nodes[basis.digit(node, i)]);
         space.of_germs(&germs, x);
     });
-    let outputs = response.outputs();
-    if let Some(place) = answers.iter().position(|y| !y.is_finite()) {
-        return Err(Error::NotFinitePoint { method: "polynomial chaos", point: place / outputs });
+    basis.series(&answers, response.outputs(), space.is_correlated())
+}
+
+/// The polynomials of each direction at the nodes of its rule.
+struct Basis {
+    order: usize,
+    variables: usize,
+    nodes: usize,
+    rules: Vec<Rule>,
+    /// By direction, node and degree.
+    values: Vec<Vec<Vec<f64>>>,
+}
+
+impl Basis {
+    /// The place of a node of the tensor rule in a direction.
+    fn digit(&self, node: usize, i: usize) -> usize {
+        node / (self.order + 1).pow(i as u32) % (self.order + 1)
     }
-    let indices = multi_indices(variables, order);
-    let mut coefficients = vec![vec![0.0; indices.len()]; outputs];
-    let mut squares = vec![0.0; outputs];
-    let weights: Vec<f64> = (0..nodes).map(|node| (0..variables).map(|i| rules[i].weights[digit(node, i)]).product()).collect();
-    for (node, weight) in weights.iter().enumerate() {
-        let here = &answers[node * outputs..(node + 1) * outputs];
-        for (place, index) in indices.iter().enumerate() {
-            let of_degree = index.iter().enumerate().filter(|(_, degree)| **degree > 0);
-            let psi: f64 = of_degree.map(|(i, degree)| values[i][digit(node, i)][*degree]).product();
-            coefficients.iter_mut().zip(here).for_each(|(c, y)| c[place] += weight * psi * y);
+
+    /// The series of the answers at all nodes.
+    fn series(&self, answers: &[f64], outputs: usize, correlated: bool) -> Result<Chaos, Error> {
+        let Self { order, variables, nodes, .. } = *self;
+        let (rules, values, digit) = (&self.rules, &self.values, |node, i| self.digit(node, i));
+        if let Some(place) = answers.iter().position(|y| !y.is_finite()) {
+            return Err(Error::NotFinitePoint { method: "polynomial chaos", point: place / outputs });
         }
-    }
-    for (node, weight) in weights.iter().enumerate() {
-        for (k, square) in squares.iter_mut().enumerate() {
-            *square += weight * (answers[node * outputs + k] - coefficients[k][0]).powi(2);
+        let indices = multi_indices(variables, order);
+        let mut coefficients = vec![vec![0.0; indices.len()]; outputs];
+        let mut squares = vec![0.0; outputs];
+        let weights: Vec<f64> = (0..nodes).map(|node| (0..variables).map(|i| rules[i].weights[digit(node, i)]).product()).collect();
+        for (node, weight) in weights.iter().enumerate() {
+            let here = &answers[node * outputs..(node + 1) * outputs];
+            for (place, index) in indices.iter().enumerate() {
+                let of_degree = index.iter().enumerate().filter(|(_, degree)| **degree > 0);
+                let psi: f64 = of_degree.map(|(i, degree)| values[i][digit(node, i)][*degree]).product();
+                coefficients.iter_mut().zip(here).for_each(|(c, y)| c[place] += weight * psi * y);
+            }
         }
+        for (node, weight) in weights.iter().enumerate() {
+            for (k, square) in squares.iter_mut().enumerate() {
+                *square += weight * (answers[node * outputs + k] - coefficients[k][0]).powi(2);
+            }
+        }
+        Ok(Chaos { order, nodes, indices, coefficients, quadrature_variance: squares, correlated })
     }
-    Ok(Chaos { order, nodes, indices, coefficients, quadrature_variance: squares, correlated: space.is_correlated() })
 }
 
 impl Chaos {

@@ -85,7 +85,7 @@ pub fn describe(family: &str) -> Description {
 
 /// The project's root.
 pub fn project() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..")
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../..")
 }
 
 /// max |x − y| / max |y|, or the larger of the two when y is zero.

@@ -12,7 +12,9 @@ use featherbench_model::{Description, Model, neutral};
 use featherbench_robots::{Family, Random};
 use featherbench_spatial::{Transform, Vec3};
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// μ of the feet on the ground.
 pub(crate) const FRICTION: f64 = 0.6;
@@ -213,11 +215,28 @@ impl Standing {
 }
 
 pub(super) fn cases() -> Vec<Case> {
-    Stand::ALL.into_iter().flat_map(|stand| (0..solver::all().len()).map(move |which| case(stand, which))).collect()
+    let of = |stand| {
+        let runs = Arc::new(Runs { stand, taken: Mutex::default() });
+        (0..solver::all().len()).map(move |which| case(stand, which, runs.clone()))
+    };
+    Stand::ALL.into_iter().flat_map(of).collect()
+}
+
+/// The problems of a robot's runs, by seed. All solvers are asked for the same.
+struct Runs {
+    stand: Stand,
+    taken: Mutex<BTreeMap<u64, Result<Arc<[Taken]>, NoAnswer>>>,
+}
+
+impl Runs {
+    fn of(&self, seed: u64) -> Result<Arc<[Taken]>, NoAnswer> {
+        let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
+        taken.entry(seed).or_insert_with(|| Ok(self.stand.make()?.run(seed)?.into())).clone()
+    }
 }
 
 /// The problems of a run by one solver: how many it answers, and the worst residual and the iterations of its answers.
-fn case(stand: Stand, which: usize) -> Case {
+fn case(stand: Stand, which: usize, runs: Arc<Runs>) -> Case {
     let name = solver::all()[which].name();
     let direct = name == "newton";
     let first_order = ["gauss_seidel", "block_gauss_seidel", "admm"].contains(&name);
@@ -240,7 +259,7 @@ fn case(stand: Stand, which: usize) -> Case {
         ],
         evaluate: Box::new(move |seed| {
             let solver = &solver::all()[which];
-            let problems = stand.make()?.run(seed)?;
+            let problems = runs.of(seed)?;
             let all = problems.first().map(|taken| &taken.problem).filter(|problem| problem.contacts().len() == stand.contacts());
             let Some(mechanism) = all.and_then(|problem| problem.mechanism()) else {
                 return Err(NoAnswer::Failed("the robot does not meet the ground with all its feet".into()));

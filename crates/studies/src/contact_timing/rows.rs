@@ -3,7 +3,7 @@
 use super::candidates::{Candidate, Told, WHOLE};
 use super::{Measured, STUDY, TARGET};
 use crate::timing::rows::{estimated, judged};
-use crate::timing::statistics::{CONTROL_LEVEL, Estimate, LEVEL};
+use featherbench_bench::statistics::{CONTROL_LEVEL, Estimate, LEVEL};
 use featherbench_bench::{Cell, Gates, Outcome};
 use featherbench_results::{Kind, Relation, Row, Verdict, canonical_json};
 use featherbench_robots::Random;

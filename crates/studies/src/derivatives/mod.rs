@@ -15,6 +15,7 @@ pub(crate) mod words;
 
 use crate::{Made, Setup, row};
 use featherbench_bench::measure::{ForwardScale, ratio, scaled_error, worst};
+use featherbench_bench::statistics::quantile;
 use featherbench_bench::truth::TrueDerivatives;
 use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, NoAnswer, OWN, Outcome, Quantity, Robot, Study, derivative_floor};
 use featherbench_results::{Row, Verdict, canonical_json};
@@ -198,7 +199,7 @@ fn median(errors: &[f64]) -> f64 {
         return f64::NAN;
     }
     sorted.sort_unstable_by(f64::total_cmp);
-    crate::quantile(&sorted, 0.5)
+    quantile(&sorted, 0.5)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! medians follow from it. The interval contains the middle of all draws' values. It shows how noise within one process changes the value. It
 //! does not show how another process, with its data elsewhere, would.
 
-use crate::quantile;
+use featherbench_bench::statistics::quantile;
 use featherbench_report::fit::power_law;
 use featherbench_robots::Random;
 

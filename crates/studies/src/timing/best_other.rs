@@ -2,9 +2,9 @@
 
 use super::rows::{Check, Experiment, estimated, judged, params};
 use super::samples::Candidate;
-use super::statistics::{Estimate, LEVEL};
 use super::{BEST_OTHER, REFERENCE};
 use crate::quantile;
+use featherbench_bench::statistics::{Estimate, LEVEL};
 use featherbench_results::{Row, canonical_json};
 
 impl Experiment<'_> {

@@ -22,7 +22,6 @@ pub(crate) mod protocol;
 pub(crate) mod rows;
 pub(crate) mod samples;
 pub(crate) mod section;
-pub(crate) mod statistics;
 pub(crate) mod words;
 
 use crate::{Made, Setup};

@@ -10,6 +10,7 @@
 //! the candidates' clocks and from a clock that is an argument.
 
 use super::samples::Samples;
+use featherbench_bench::statistics::EPOCHS;
 use featherbench_bench::{Evaluation, NoAnswer, Relocation};
 use featherbench_robots::Random;
 use std::collections::VecDeque;
@@ -18,9 +19,6 @@ use std::time::Duration;
 /// The shortest block. It is some thousand times the clock's resolution and the cost of reading it. It is so short that most blocks are not
 /// interrupted: the system's timer ticks every 4 ms.
 const BLOCK: Duration = Duration::from_micros(200);
-/// Epochs of an experiment, and so the fewest rounds. Times vary more between layouts than between rounds of one layout. With thirty epochs
-/// of ten rounds a third of all A/A ratios had an interval slightly wider than the noise. The same time is better spent on many epochs.
-pub(crate) const EPOCHS: usize = 60;
 /// Most rounds of an epoch: with more time the blocks become longer.
 const MOST_ROUNDS: usize = 5;
 /// Calls before a block that are not timed: one per this number of calls of the block.

@@ -2,10 +2,10 @@
 
 use super::machine::Machine;
 use super::samples::{Candidate, Samples, outcome_samples};
-use super::statistics::{CONTROL_LEVEL, Estimate, Finding, LEVEL};
 use super::{CHECK, EXPERIMENT, MACHINE, OVERHEAD, REFERENCE, check};
 use crate::{quantile, row};
 use featherbench_bench::measure::worst;
+use featherbench_bench::statistics::{CONTROL_LEVEL, Estimate, Finding, LEVEL};
 use featherbench_bench::{Cell, Finished, Gates, NoAnswer, Outcome, Robot};
 use featherbench_results::{Kind, Relation, Row, Verdict, canonical_json};
 use featherbench_robots::Random;
