@@ -10,7 +10,7 @@ use featherbench_continua::known::{
     bessel_zero, cantilever_root, edges_frequency_prefactor, edges_tip_prefactor, elastica, laguerre_zeros, links_frequency_prefactor,
     links_tip_prefactor, sections_tip_prefactor, string_frequency_prefactor,
 };
-use featherbench_spatial::Real;
+use featherbench_spatial::{Real, larger};
 
 /// A root of f in double-double by the secant rule; the guesses are within 10⁻³ of it and the rule has order 1.6.
 fn root(f: impl Fn(Wide) -> Wide, guess: f64) -> Wide {
@@ -175,7 +175,7 @@ fn edges_tip(n: usize, alpha: f64) -> f64 {
             for i in 0..n {
                 step = (force[i] - beside[i] * step) / diagonal[i];
                 theta[i] += step;
-                largest = largest.max(step.abs());
+                largest = larger(largest, step.abs());
             }
             if largest < 1e-14 {
                 break;

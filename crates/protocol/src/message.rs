@@ -78,8 +78,9 @@ impl Message {
         let mut bytes = Value::Object(header).to_string().into_bytes();
         bytes.push(b'\n');
         for block in &self.blocks {
-            bytes.reserve(8 * block.data.len());
-            block.data.iter().for_each(|x| bytes.extend_from_slice(&x.to_le_bytes()));
+            let begin = bytes.len();
+            bytes.resize(begin + 8 * block.data.len(), 0);
+            bytes[begin..].as_chunks_mut().0.iter_mut().zip(&block.data).for_each(|(bytes, x)| *bytes = x.to_le_bytes());
         }
         bytes
     }
