@@ -2,7 +2,7 @@
 
 use crate::common;
 
-use common::{constant, each_robot_and_state, flow, larger, lifted, unit, within};
+use common::{condition, constant, each_robot_and_state, flow, larger, lifted, unit, within};
 use featherbench_dynamics::{Aba, FdDerivatives, FdPartials, TreeSparse, fd_derivatives, mass_matrix};
 use featherbench_model::Model;
 use featherbench_robots::{Family, StateBatch};
@@ -41,14 +41,6 @@ fn over_inertias(matrix: &TreeSparse<f64>, column: impl Fn(f64) -> f64, truth: &
         |entries: &DMatrix<f64>| entries.iter().enumerate().map(|(k, x)| x.abs() * root[k % n] / column(root[k / n])).fold(0.0, larger);
     let (scale, error) = (over(truth), over(&(found - truth)));
     if error == 0.0 { 0.0 } else { error / scale }
-}
-
-/// Condition number of the mass matrix scaled to unit diagonal.
-fn condition(matrix: &TreeSparse<f64>) -> f64 {
-    let root: Vec<f64> = matrix.diagonal().map(f64::sqrt).collect();
-    let scaled = DMatrix::from_fn(root.len(), root.len(), |i, j| matrix.get(i, j) / (root[i] * root[j]));
-    let eigenvalues = scaled.symmetric_eigenvalues();
-    eigenvalues.max() / eigenvalues.min()
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use crate::common;
 
 use common::dense::{Dense, off};
-use common::{ROBOTS, lifted, robot, topology, within};
+use common::{ROBOTS, condition, lifted, robot, topology, within};
 use featherbench_dynamics::{
     BaseBlocks, Error, FloatingBase, NoFloatingBase, NotPositiveDefinite, PartitionError, TreeSparse, bias_force, centroidal_momentum,
     forward_dynamics, forward_kinematics, mass_matrix,
@@ -60,10 +60,7 @@ fn dense6(matrix: [[f64; 6]; 6]) -> Dense {
 
 /// What a factorization in `f64` of a part of M may lose: κ of M scaled to a unit diagonal, times roundings.
 fn tolerance(m: &TreeSparse<f64>) -> f64 {
-    let dense = m.to_dense();
-    let scaled = nalgebra::DMatrix::from_fn(m.size(), m.size(), |i, j| dense[(i, j)] / (dense[(i, i)] * dense[(j, j)]).sqrt());
-    let eigenvalues = scaled.symmetric_eigenvalues();
-    8.0 * f64::EPSILON * eigenvalues.max() / eigenvalues.min()
+    8.0 * f64::EPSILON * condition(m)
 }
 
 /// M_bb from the description alone: masses, centres and inertias of all bodies where forward kinematics puts them.

@@ -2,7 +2,7 @@
 
 use crate::common;
 
-use common::{ROBOTS, build, distance, gap, larger, largest, robot, within, wrenches};
+use common::{ROBOTS, build, condition, distance, gap, larger, largest, robot, within, wrenches};
 use featherbench_dynamics::{
     Aba, Bias, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, Rnea, TreeSparse, bias_force, center_of_mass, centroidal_momentum,
     energy, forward_dynamics, forward_kinematics, inverse_dynamics, jacobian, mass_matrix,
@@ -21,14 +21,6 @@ fn each_state(mut check: impl FnMut(&str, &Model<f64>, &[f64], &[f64], &[f64], &
             check(&label, &model, states.q(k), states.v(k), states.a(k), states.tau(k));
         }
     }
-}
-
-/// Condition number of the mass matrix scaled to unit diagonal, and its dense form.
-fn condition(matrix: &TreeSparse<f64>) -> f64 {
-    let scale: Vec<f64> = matrix.diagonal().map(|d| 1.0 / d.sqrt()).collect();
-    let scaled = nalgebra::DMatrix::from_fn(matrix.size(), matrix.size(), |i, j| matrix.get(i, j) * scale[i] * scale[j]);
-    let eigenvalues = scaled.symmetric_eigenvalues();
-    eigenvalues.max() / eigenvalues.min()
 }
 
 #[test]

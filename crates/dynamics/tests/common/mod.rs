@@ -26,6 +26,37 @@ pub fn largest(a: &[f64]) -> f64 {
     distance(a, &vec![0.0; a.len()])
 }
 
+/// κ of a mass matrix scaled to a unit diagonal: the largest Rayleigh quotients of iterations with it and with its inverse. Each is below its
+/// eigenvalue, and within a percent of it.
+pub fn condition(matrix: &TreeSparse<f64>) -> f64 {
+    let scale: Vec<f64> = matrix.diagonal().map(|d| 1.0 / d.sqrt()).collect();
+    let factors = matrix.clone().into_ltdl().unwrap();
+    let scaled = |x: &[f64], by: &dyn Fn(f64, f64) -> f64| x.iter().zip(&scale).map(|(x, s)| by(*x, *s)).collect::<Vec<f64>>();
+    let eigenvalue = |apply: &dyn Fn(&[f64]) -> Vec<f64>| {
+        let mut x: Vec<f64> = (0..matrix.size()).map(|k| 1.0 + (k as f64).sin()).collect();
+        let (mut before, mut quotient) = (0.0, f64::INFINITY);
+        while (quotient - before).abs() > 1e-4 * quotient {
+            let size = x.iter().map(|x| x * x).sum::<f64>().sqrt();
+            x.iter_mut().for_each(|x| *x /= size);
+            let y = apply(&x);
+            (before, quotient) = (quotient.min(f64::MAX), x.iter().zip(&y).map(|(x, y)| x * y).sum());
+            x = y;
+        }
+        quotient
+    };
+    let largest = eigenvalue(&|x| {
+        let mut y = vec![0.0; x.len()];
+        matrix.mul(&scaled(x, &|x, s| x * s), &mut y).unwrap();
+        scaled(&y, &|y, s| y * s)
+    });
+    let inverse = eigenvalue(&|x| {
+        let mut y = scaled(x, &|x, s| x / s);
+        factors.solve(&mut y).unwrap();
+        scaled(&y, &|y, s| y / s)
+    });
+    largest * inverse
+}
+
 /// How a random robot is made.
 #[derive(Clone, Copy)]
 pub struct Recipe {
