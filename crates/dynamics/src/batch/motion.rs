@@ -170,9 +170,9 @@ impl Kernel<1> for BodyJacobian {
         let Motions { jacobian, result, body, .. } = &mut workspace.motions;
         let jacobian = made(jacobian, &model.topology, Jacobian::new);
         let done = jacobian.run(model, q, *body).map(|_| ());
-        result.clear();
-        for column in jacobian.columns() {
-            result.extend_from_slice(&column.to_array());
+        result.resize(SIX * jacobian.columns().len(), T::zero());
+        for (numbers, column) in result.as_chunks_mut().0.iter_mut().zip(jacobian.columns()) {
+            *numbers = column.to_array();
         }
         (result, done.map_err(Error::from))
     }

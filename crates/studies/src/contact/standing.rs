@@ -222,14 +222,17 @@ pub(super) fn cases() -> Vec<Case> {
     Stand::ALL.into_iter().flat_map(of).collect()
 }
 
+/// The problems of a run, or why there are none.
+type Run = Result<Arc<[Taken]>, NoAnswer>;
+
 /// The problems of a robot's runs, by seed. All solvers are asked for the same.
 struct Runs {
     stand: Stand,
-    taken: Mutex<BTreeMap<u64, Result<Arc<[Taken]>, NoAnswer>>>,
+    taken: Mutex<BTreeMap<u64, Run>>,
 }
 
 impl Runs {
-    fn of(&self, seed: u64) -> Result<Arc<[Taken]>, NoAnswer> {
+    fn of(&self, seed: u64) -> Run {
         let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
         taken.entry(seed).or_insert_with(|| Ok(self.stand.make()?.run(seed)?.into())).clone()
     }
