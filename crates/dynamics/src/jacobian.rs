@@ -26,6 +26,8 @@ pub struct Jacobian<T> {
 struct Link<T> {
     /// Its index.
     body: usize,
+    /// Its first dof, and how many it has.
+    dofs: [usize; 2],
     /// Its rotation: in the parent, then in the world.
     rotation: Mat3<T>,
     /// The displacement from the parent's origin: in the parent's axes, then in the world's.
@@ -52,13 +54,16 @@ impl<T: Real> Jacobian<T> {
             return Err(DimensionError { what: "bodies, for the one that was named", expected: body + 1, found: self.bodies });
         }
 
-        self.columns.fill(Motion::zero());
-        self.path.clear();
+        // The columns of the last run's path; the others are zero.
+        for Link { dofs: [first, count], .. } in self.path.drain(..) {
+            self.columns[first..][..count].fill(Motion::zero());
+        }
         let mut ancestor = Some(body);
         while let Some(i) = ancestor {
             let Transform { rotation, translation: step } = model.joint_transform(i, q);
-            self.path.push(Link { body: i, rotation, step });
-            ancestor = model.topology.joints()[i].parent;
+            let joint = &model.topology.joints()[i];
+            self.path.push(Link { body: i, dofs: [joint.v, joint.kind.nv()], rotation, step });
+            ancestor = joint.parent;
         }
         // R_i = R_p R,  r = R_p (p_i − p_p)
         let mut parent = Mat3::identity();
@@ -68,12 +73,12 @@ impl<T: Real> Jacobian<T> {
         }
         // J_j = [R S_ω; R S_p + R S_ω × d], d (`way`) the displacement from the origin of the joint's body to that of the body
         let mut way = Vec3::zero();
-        for Link { body, rotation, step } in self.path.iter().copied() {
-            let joint = &model.topology.joints()[body];
-            for k in 0..joint.kind.nv() {
-                let column: Motion<T> = joint.kind.column(&model.subspaces[body], k);
+        for Link { body, dofs: [first, count], rotation, step } in self.path.iter().copied() {
+            let kind = model.topology.joints()[body].kind;
+            for k in 0..count {
+                let column: Motion<T> = kind.column(&model.subspaces[body], k);
                 let ang = rotation * column.ang;
-                self.columns[joint.v + k] = Motion::new(ang, ang.cross_add(way, rotation * column.lin));
+                self.columns[first + k] = Motion::new(ang, ang.cross_add(way, rotation * column.lin));
             }
             way += step;
         }

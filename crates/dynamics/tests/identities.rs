@@ -124,6 +124,19 @@ fn kinetic_energy_is_half_of_v_m_v() {
     });
 }
 
+/// A workspace that had another body gives what a new one gives: no column of the other is left.
+#[test]
+fn a_jacobian_keeps_nothing_of_another_body() {
+    each_state(|name, model, q, _, _, _| {
+        let bodies = model.topology.bodies();
+        let mut used = Jacobian::new(&model.topology);
+        for body in (0..bodies).rev().chain(0..bodies) {
+            let expected = jacobian(model, q, body).unwrap();
+            assert_eq!(used.run(model, q, body).unwrap(), expected, "{name}, body {body}");
+        }
+    });
+}
+
 #[test]
 fn jacobian_times_velocity_is_velocity() {
     each_state(|name, model, q, v, a, _| {
