@@ -23,6 +23,19 @@ fn each_state(mut check: impl FnMut(&str, &Model<f64>, &[f64], &[f64], &[f64], &
     }
 }
 
+/// The condition number that tolerances are made of is that of the dense eigenvalues: not above it, and most of it.
+#[test]
+fn the_condition_number_is_that_of_the_eigenvalues() {
+    each_state(|name, model, q, _, _, _| {
+        let matrix = mass_matrix(model, q).unwrap();
+        let root: Vec<f64> = matrix.diagonal().map(f64::sqrt).collect();
+        let scaled = nalgebra::DMatrix::from_fn(root.len(), root.len(), |i, j| matrix.get(i, j) / (root[i] * root[j]));
+        let eigenvalues = scaled.symmetric_eigenvalues();
+        let (found, due) = (condition(&matrix), eigenvalues.max() / eigenvalues.min());
+        assert!(found > 0.5 * due && found < due * (1.0 + 1e-6), "{name}: {found} is not {due}");
+    });
+}
+
 #[test]
 fn forward_dynamics_inverts_inverse_dynamics() {
     each_state(|name, model, q, v, a, _| {
