@@ -7,5 +7,7 @@ mod errors;
 mod laws;
 mod motion;
 mod prefactors;
+#[path = "../../robots/tests/share.rs"]
+mod share;
 mod statics;
 mod wide;

@@ -10,6 +10,8 @@ use featherbench_continua::{
     Basis, Element, Hinges, Load, Masses, Material, Rod, Section, Settings, Status, Strain, equilibrium, fit, generalized, library, modes,
 };
 use nalgebra::DMatrix;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 
 fn frequencies(element: &Element) -> Vec<f64> {
     let (beam, _) = library::cantilever(&rod(), element).unwrap();
@@ -92,17 +94,26 @@ fn frequencies_of_links_are_those_of_a_chain_in_absolute_angles() {
 
 #[test]
 fn frequency_errors_have_order_and_prefactor() {
-    let error = |element: Element, k: usize| frequencies(&element)[k] / cantilever_root(k).powi(2) - 1.0;
+    let found = RefCell::new(BTreeMap::new());
+    let error = |name: &'static str, n: usize, k: usize| {
+        let element = || match name {
+            "middle" => links(n, Hinges::Middle),
+            "sections" => sections(n),
+            "Hermite" => ritz(Basis::Hermite(n)),
+            _ => links(n, Hinges::Start),
+        };
+        found.borrow_mut().entry((name, n)).or_insert_with(|| frequencies(&element()))[k] / cantilever_root(k).powi(2) - 1.0
+    };
     for k in 0..3 {
         let theory = links_frequency_prefactor(Hinges::Middle, k);
-        assert_law("middle", &[8, 16, 32, 64], |n| error(links(n, Hinges::Middle), k), 2.0, 4.0, theory);
+        assert_law("middle", &[8, 16, 32, 64], |n| error("middle", n, k), 2.0, 4.0, theory);
         let theory = sections_frequency_prefactor(k);
-        assert_law("sections", &[8, 16, 32, 64], |n| error(sections(n), k), 2.0, 4.0, theory);
+        assert_law("sections", &[8, 16, 32, 64], |n| error("sections", n, k), 2.0, 4.0, theory);
         let theory = hermite_frequency_prefactor(k);
         // The law holds where an element is short beside a half wave.
-        assert_law("Hermite", &[4, 6, 8, 12].map(|n| n * (2 * k + 1)), |n| error(ritz(Basis::Hermite(n)), k), 4.0, 6.0, theory);
+        assert_law("Hermite", &[4, 6, 8, 12].map(|n| n * (2 * k + 1)), |n| error("Hermite", n, k), 4.0, 6.0, theory);
         // The wall's spring is h/2 too soft: the rod is as if longer by h/2, and ω ∝ 1/L².
-        assert_law("start", &[24, 48, 96, 144], |n| error(links(n, Hinges::Start), k), 1.0, 2.0, -1.0);
+        assert_law("start", &[24, 48, 96, 144], |n| error("start", n, k), 1.0, 2.0, -1.0);
     }
 }
 

@@ -4,6 +4,7 @@
 //! doubled n, one power of 1/n after the other.
 
 use crate::beams::{links, sections, tip_under};
+use crate::share::one_of;
 use crate::wide::{Wide, wide};
 use featherbench_continua::Hinges;
 use featherbench_continua::known::{
@@ -207,7 +208,7 @@ fn prefactors_of_strings_are_those_of_their_chains() {
 
 #[test]
 fn tip_prefactors_are_those_of_equilibria() {
-    for alpha in [0.1, 1.0, 10.0] {
+    for alpha in [0.1, 1.0, 10.0].into_iter().step_by(one_of(2)) {
         let exact = elastica(alpha).deflection;
         let found = |known: f64, order: i32, tip: &dyn Fn(usize) -> f64| {
             let scaled = [16, 32, 64].map(|n| (tip(n) / exact - 1.0) * (n as f64).powi(order));

@@ -244,6 +244,7 @@ fn a_state_with_a_bad_number_is_reported_and_harms_no_other() {
     let model = build(&ROBOTS[7].1);
     let (count, nq, nv) = (19, model.topology.nq(), model.topology.nv());
     let clean = States::random(&model, count);
+    let before = [Batch::<f64>::new(&model), Batch::new(&model).on_all_cores()].map(|mut batch| in_rows(&mut batch, &model, &clean));
     for (bad, value) in [(0, f64::NAN), (6, f64::INFINITY), (8, f64::NEG_INFINITY), (18, f64::NAN)] {
         let six = 6 * model.topology.bodies();
         let places =
@@ -258,9 +259,9 @@ fn a_state_with_a_bad_number_is_reported_and_harms_no_other() {
             numbers[bad * each + entry] = value;
             for parallel in [false, true] {
                 let new = || if parallel { Batch::<f64>::new(&model).on_all_cores() } else { Batch::new(&model) };
-                let before = in_rows(&mut new(), &model, &clean);
+                let before = &before[usize::from(parallel)];
                 for after in [in_rows(&mut new(), &model, &states), in_lanes(&mut new(), &model, &states)] {
-                    for ((quantity, done, found), (.., before)) in after.iter().zip(&before) {
+                    for ((quantity, done, found), (.., before)) in after.iter().zip(before) {
                         let independent = match array {
                             "velocities v" => matches!(*quantity, "mass matrix" | "factors" | "solution"),
                             "external wrenches" => !quantity.ends_with("wrenches"),

@@ -6,6 +6,9 @@
 mod export;
 pub mod mjcf;
 pub mod neutral;
+#[cfg(test)]
+#[path = "../../robots/tests/share.rs"]
+mod share;
 mod solid;
 mod text;
 pub mod urdf;

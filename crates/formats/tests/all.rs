@@ -7,6 +7,8 @@ mod mjcf_import;
 mod neutral;
 mod residuals;
 mod robots;
+#[path = "../../robots/tests/share.rs"]
+mod share;
 mod uncertain;
 mod urdf_errors;
 mod urdf_export;

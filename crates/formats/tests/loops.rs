@@ -1,5 +1,6 @@
 //! Loops in files: exact round trips in the neutral format, mimics in URDF, equality constraints in MJCF, and errors that name the place.
 
+use crate::share::one_of;
 use featherbench_formats::urdf::Options;
 use featherbench_formats::{ExportError, OnLoss, Reason, mjcf, neutral, urdf};
 use featherbench_model::{Description, Loop, LoopEnd, LoopKind, LoopMotion, Placement};
@@ -143,7 +144,7 @@ fn bad_loops_are_named_by_file_field_and_index() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2048, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 2048 / one_of(4) as u32, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     /// A file with bytes changed, removed or doubled in its loops is read or gives an error, never a panic; what is read is written.
     #[test]

@@ -1,5 +1,6 @@
 //! The neutral file: exact round trips, and errors that name the place.
 
+use crate::share::one_of;
 use featherbench_formats::neutral::{self, NeutralProblem};
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
 use featherbench_robots::{Base, Family, Joints, Kind, Mix, Tree};
@@ -235,7 +236,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 4096 / one_of(4) as u32, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     /// A file with bytes changed, removed or doubled is read or gives an error, never a panic.
     #[test]

@@ -6,3 +6,5 @@ mod continua;
 mod descriptions;
 mod loops;
 mod normalisation;
+#[path = "../../robots/tests/share.rs"]
+mod share;

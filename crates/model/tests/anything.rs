@@ -1,12 +1,13 @@
 //! Any description, however wrong, gives an error or is compiled: nothing panics.
 
 use crate::arbitrary::any_description;
+use crate::share::one_of;
 use featherbench_model::Model;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 4096 / one_of(4) as u32, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     #[test]
     fn nothing_panics(robot in any_description()) {

@@ -5,5 +5,7 @@ mod golden;
 mod integrators;
 mod numbers;
 mod routes;
+#[path = "../../robots/tests/share.rs"]
+mod share;
 mod support;
 mod witness;

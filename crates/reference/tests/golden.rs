@@ -1,7 +1,9 @@
-//! The golden data: they belong to the witnesses of this commit, and every run derives a random twentieth of them again.
+//! The golden data: they belong to the witnesses of this commit, and every run derives a random twentieth of them again, by day on a third
+//! of the robots.
 //!
 //! `FEATHERBENCH_GOLDEN_SEED` chooses the twentieth (without it the day does); `FEATHERBENCH_GOLDEN_SHARE=1` derives all.
 
+use crate::share::one_of;
 use crate::support;
 
 use featherbench_reference::{Precision, nearest_doubles};
@@ -116,7 +118,9 @@ fn a_random_twentieth_is_derived_again() {
     let seed = variable("FEATHERBENCH_GOLDEN_SEED").map_or_else(day, |text| text.parse().expect("FEATHERBENCH_GOLDEN_SEED is a number"));
     let share = variable("FEATHERBENCH_GOLDEN_SHARE").map_or(0.05, |text| text.parse().expect("FEATHERBENCH_GOLDEN_SHARE is a number"));
     let (index, mut compared) = (index(), 0);
-    for (case, kept) in CASES.iter().zip(index["cases"].as_array().unwrap()) {
+    // By day of every third robot, from another one on each day.
+    let cases = CASES.iter().zip(index["cases"].as_array().unwrap());
+    for (case, kept) in cases.skip(seed as usize % one_of(3)).step_by(one_of(3)) {
         let answers = Answers::derive(case, &case.state(SEED, 0)).unwrap();
         let rows = rows(case.name);
         assert_eq!(rows.len(), answers.id.len(), "{}", case.name);
@@ -136,5 +140,5 @@ fn a_random_twentieth_is_derived_again() {
         }
     }
     println!("{compared} golden numbers derived again (FEATHERBENCH_GOLDEN_SEED={seed})");
-    assert!(compared >= 100, "{compared}");
+    assert!(compared >= 100 / one_of(5), "{compared}");
 }

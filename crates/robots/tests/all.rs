@@ -3,4 +3,5 @@
 #[path = "../../model/tests/arbitrary.rs"]
 mod arbitrary;
 mod families;
+mod share;
 mod states;

@@ -1,6 +1,7 @@
 //! Batches of states: every case present, reproducible, within its ranges.
 
 use crate::arbitrary::any_description;
+use crate::share::one_of;
 use featherbench_model::Model;
 use featherbench_robots::{BadState, Case, Family, StateBatch};
 use proptest::prelude::*;
@@ -117,7 +118,7 @@ fn batches_that_do_not_belong_to_a_model_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 4096 / one_of(4) as u32, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     /// Whatever is compiled has states: their numbers are finite.
     #[test]

@@ -5,3 +5,5 @@ mod algebra;
 mod double_double;
 mod exponential;
 mod lanes;
+#[path = "../../robots/tests/share.rs"]
+mod share;

@@ -46,6 +46,9 @@ mod reproductions;
 mod residuals;
 mod scaling;
 mod scenes;
+#[cfg(test)]
+#[path = "../../robots/tests/share.rs"]
+mod share;
 mod steps;
 mod sweep;
 mod timing;

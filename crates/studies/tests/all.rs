@@ -18,6 +18,8 @@ mod repeatability;
 mod reproductions;
 mod scaling;
 mod sections;
+#[path = "../../robots/tests/share.rs"]
+mod share;
 mod singular;
 mod steps;
 mod support;

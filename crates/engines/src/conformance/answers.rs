@@ -220,7 +220,10 @@ fn advice(compared: &[Compared], quantity: Quantity) -> Vec<String> {
         ];
     }
     let told = |hypotheses: &[&Hypothesis]| hypotheses.iter().map(|m| format!("{}: {}", m.seems, m.advice)).collect::<Vec<_>>();
-    let all = |hypotheses: &[&Hypothesis]| compared.iter().all(|answer| answer.explained(hypotheses));
+    // Most mistakes fail at the first answer: a small wrong one is tried first.
+    let mut in_order: Vec<&Compared> = compared.iter().collect();
+    in_order.sort_by_key(|answer| (answer.right(), answer.value.len()));
+    let all = |hypotheses: &[&Hypothesis]| in_order.iter().all(|answer| answer.explained(hypotheses));
     let mut single: Vec<(usize, &Hypothesis)> = Vec::new();
     for hypothesis in &HYPOTHESES {
         if all(&[hypothesis]) {

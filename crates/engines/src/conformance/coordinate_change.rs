@@ -5,8 +5,8 @@ use featherbench_model::{BodyDescription, Description, JointType};
 
 /// v_e = T v and a_e = T a + b, with an orthogonal T, instead of v and a.
 pub(super) struct CoordinateChange {
-    /// T, row-major.
-    t: Vec<f64>,
+    /// The rows of T: columns, in order, with their entries. All other entries are zero.
+    t: Vec<Vec<(usize, f64)>>,
     /// b.
     pub(super) b: Vec<f64>,
 }
@@ -86,9 +86,7 @@ pub(super) fn of_planar(robot: &Description, state: &State) -> CoordinateChange 
 /// v_e has our numbers in another order. T is the permutation by `ours`, the place in our order of each number of v_e.
 pub(super) fn of_order(ours: &[usize]) -> CoordinateChange {
     let n = ours.len();
-    let mut change = CoordinateChange { t: vec![0.0; n * n], b: vec![0.0; n] };
-    ours.iter().enumerate().for_each(|(row, &column)| *change.entry(row, column) = 1.0);
-    change
+    CoordinateChange { t: ours.iter().map(|&column| vec![(column, 1.0)]).collect(), b: vec![0.0; n] }
 }
 
 /// Puts numbers of another order into ours.
@@ -99,24 +97,30 @@ pub(super) fn put_back(ours: &[usize], numbers: &mut [f64]) {
 
 impl CoordinateChange {
     fn identity(n: usize) -> Self {
-        let t = (0..n * n).map(|at| if at / n == at % n { 1.0 } else { 0.0 }).collect();
-        Self { t, b: vec![0.0; n] }
+        Self { t: (0..n).map(|row| vec![(row, 1.0)]).collect(), b: vec![0.0; n] }
     }
 
     fn entry(&mut self, row: usize, column: usize) -> &mut f64 {
-        let n = self.b.len();
-        &mut self.t[row * n + column]
+        let row = &mut self.t[row];
+        let at = row.binary_search_by_key(&column, |&(column, _)| column).unwrap_or_else(|at| {
+            row.insert(at, (column, 0.0));
+            at
+        });
+        &mut row[at].1
     }
 
     /// T x.
     pub(super) fn forth(&self, x: &[f64]) -> Vec<f64> {
-        self.t.chunks_exact(x.len()).map(|row| row.iter().zip(x).map(|(t, x)| t * x).sum()).collect()
+        self.t.iter().map(|row| row.iter().map(|&(column, t)| t * x[column]).sum()).collect()
     }
 
     /// T' x.
     pub(super) fn back(&self, x: &[f64]) -> Vec<f64> {
-        let n = x.len();
-        (0..n).map(|column| (0..n).map(|row| self.t[row * n + column] * x[row]).sum()).collect()
+        let mut sums = vec![0.0; x.len()];
+        for (row, x) in self.t.iter().zip(x) {
+            row.iter().for_each(|&(column, t)| sums[column] += t * x);
+        }
+        sums
     }
 }
 

@@ -91,6 +91,7 @@ fn neighbours(angle: f64) -> impl Iterator<Item = f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::share::one_of;
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
     use std::f64::consts::{FRAC_PI_2, PI};
@@ -105,7 +106,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig { cases: 5_000, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+        #![proptest_config(ProptestConfig { cases: 5_000 / one_of(4) as u32, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
         /// A rotation that was imported from angles is written back to the bit.
         #[test]

@@ -1,6 +1,7 @@
 //! Double-double arithmetic against multi-precision arithmetic: the error bounds that its documentation states, in units of u² = 2⁻¹⁰⁶.
 
 use super::multi_precision::{double_double, error_in_u2, exact, is_normalized, magnitude, nearly_opposite};
+use crate::share::one_of;
 use featherbench_spatial::{DoubleDouble, Dual, Lift, Real};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -13,7 +14,7 @@ fn dd(x: f64) -> DoubleDouble {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 3000 / one_of(4) as u32, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     /// Joldes, Muller & Popescu, theorem 3.1: 3u² + 13u³.
     #[test]

@@ -1,6 +1,7 @@
 //! Compensated numbers against multi-precision ones, in units of u² times the magnitudes that were added.
 
 use super::multi_precision::{Big, double_double, error_in_u2, exact, magnitude};
+use crate::share::one_of;
 use featherbench_spatial::{Compensated, DoubleDouble, Lift, Real};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -10,7 +11,7 @@ fn error(x: Compensated, truth: &Big, scale: &Big) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 1000 / one_of(4) as u32, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     /// Ogita, Rump & Oishi, proposition 5.5, for the sum before its last rounding: γ² ≈ (2n)²u² of the magnitudes, whatever cancels.
     #[test]

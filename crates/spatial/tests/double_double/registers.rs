@@ -1,6 +1,7 @@
 //! Compensated numbers in registers, lane by lane to the bit against compensated numbers; and those of single precision.
 
 use super::multi_precision::double_double;
+use crate::share::one_of;
 use featherbench_spatial::{Compensated, DoubleDouble, Lift, Real};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -68,7 +69,7 @@ fn arithmetic<T: Real>(x: T) -> T {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 2000 / one_of(4) as u32, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     /// Ordinary angles: the registers' own sine and cosine.
     #[test]

@@ -1,5 +1,5 @@
 use super::*;
-use crate::known::tests::{cases_differ, numbers_are_as_known, wrong_numbers_fail};
+use crate::known::tests::{but_long, cases_differ, numbers_are_as_known, wrong_numbers_fail};
 
 /// No case twice, and every problem of the library has one.
 #[test]
@@ -15,7 +15,7 @@ fn every_problem_has_a_case() {
 
 #[test]
 fn known_numbers_are_reproduced() {
-    let passed = numbers_are_as_known(STUDY, &cases());
+    let passed = numbers_are_as_known(STUDY, but_long(cases(), |case| case.name.ends_with(", 64 contacts")));
     assert!(passed > 300, "{passed}");
 }
 

@@ -1,5 +1,5 @@
 use super::*;
-use crate::known::tests::{cases_differ, numbers_are_as_known, wrong_numbers_fail};
+use crate::known::tests::{but_long, cases_differ, numbers_are_as_known, wrong_numbers_fail};
 
 #[test]
 fn cases_have_names_of_their_own() {
@@ -8,7 +8,7 @@ fn cases_have_names_of_their_own() {
 
 #[test]
 fn known_numbers_are_reproduced() {
-    let passed = numbers_are_as_known(STUDY, &cases());
+    let passed = numbers_are_as_known(STUDY, but_long(cases(), |case| case.quantity == "momentum" && case.method != "links_middle"));
     assert!(passed > 90, "{passed}");
 }
 

@@ -1,11 +1,11 @@
 use super::*;
-use crate::known::tests::{cases_differ, numbers_are_as_known, wrong_numbers_fail};
+use crate::known::tests::{but_long, cases_differ, numbers_are_as_known, wrong_numbers_fail};
 
 #[test]
 fn known_numbers_are_reproduced() {
     let cases = cases();
     assert!(cases_differ(&cases) > 90);
-    let passed = numbers_are_as_known(STUDY, &cases);
+    let passed = numbers_are_as_known(STUDY, but_long(cases, |case| case.name == "puma560" && case.method == "log_cholesky"));
     assert!(passed > 150, "{passed}");
 }
 

@@ -2,6 +2,7 @@
 
 use super::Case;
 use super::case::Judged;
+use crate::share::one_of;
 use featherbench_bench::{Cell, Context, Gates, NoAnswer, Outcome};
 use featherbench_results::{Row, Verdict};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -38,25 +39,33 @@ pub(crate) fn cases_differ(cases: &[Case]) -> usize {
     seen.len()
 }
 
-/// What a case answers.
-pub(crate) type Answer = Result<Vec<f64>, NoAnswer>;
+/// A case with what it answers.
+pub(crate) type Answered = (Case, Result<Vec<f64>, NoAnswer>);
+
+/// Those that are answered by day. At night, and when the suite runs, all are: these are its longest.
+pub(crate) fn but_long(mut cases: Vec<Case>, long: impl Fn(&Case) -> bool) -> Vec<Case> {
+    let count = cases.len();
+    cases.retain(|case| one_of(2) == 1 || !long(case));
+    assert!(cases.len() < count || one_of(2) == 1, "no case is long");
+    cases
+}
 
 /// The answers of all cases for the seed 1.
-pub(crate) fn answers(cases: &[Case]) -> Vec<Answer> {
-    cases.par_iter().map(|case| (case.evaluate)(1)).collect()
+pub(crate) fn answered(cases: Vec<Case>) -> Vec<Answered> {
+    let answers: Vec<_> = cases.par_iter().map(|case| (case.evaluate)(1)).collect();
+    cases.into_iter().zip(answers).collect()
 }
 
 /// Every number is as known, and every judged one has a gate. Returns how many passed.
-pub(crate) fn numbers_are_as_known(study: &str, cases: &[Case]) -> usize {
-    answers_are_as_known(study, cases, &answers(cases))
+pub(crate) fn numbers_are_as_known(study: &str, cases: Vec<Case>) -> usize {
+    answers_are_as_known(study, &answered(cases))
 }
 
 /// The same of answers that are there.
-pub(crate) fn answers_are_as_known(study: &str, cases: &[Case], answers: &[Answer]) -> usize {
+pub(crate) fn answers_are_as_known(study: &str, answered: &[Answered]) -> usize {
     let gates = gates();
     let (mut passed, mut wrong) = (0, Vec::new());
-    assert_eq!(cases.len(), answers.len());
-    for (case, answer) in cases.iter().zip(answers) {
+    for (case, answer) in answered {
         let values = match answer {
             Ok(values) => values.clone(),
             Err(NoAnswer::NotOffered(_)) => continue,

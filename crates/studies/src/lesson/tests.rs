@@ -12,7 +12,7 @@ fn every_claim_has_a_case() {
 
 #[test]
 fn numbers_are_right_and_the_lesson_misses_by_as_much_as_known() {
-    let passed = numbers_are_as_known(STUDY, &cases());
+    let passed = numbers_are_as_known(STUDY, cases());
     assert!(passed > 150, "{passed}");
 }
 

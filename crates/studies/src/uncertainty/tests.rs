@@ -8,7 +8,7 @@ fn no_case_is_there_twice() {
 
 #[test]
 fn known_numbers_are_reproduced() {
-    let passed = numbers_are_as_known(STUDY, &cases());
+    let passed = numbers_are_as_known(STUDY, cases());
     assert!(passed > 90, "{passed}");
 }
 
