@@ -120,7 +120,6 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`Error`] when the matrix has another topology or a pivot is not positive.
-    #[inline(never)]
     pub fn run(&mut self, matrix: &TreeSparse<T>) -> Result<(), Error> {
         self.matrix.copy_from(matrix)?;
         self.factor()?;
