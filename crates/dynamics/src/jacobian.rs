@@ -54,17 +54,23 @@ impl<T: Real> Jacobian<T> {
             return Err(DimensionError { what: "bodies, for the one that was named", expected: body + 1, found: self.bodies });
         }
 
-        // The columns of the last run's path; the others are zero.
-        for Link { dofs: [first, count], .. } in self.path.drain(..) {
-            self.columns[first..][..count].fill(Motion::zero());
-        }
-        let mut ancestor = Some(body);
+        // Where this path leaves that of the last run, the columns of that one are zero again.
+        let (mut length, mut ancestor) = (0, Some(body));
         while let Some(i) = ancestor {
             let Transform { rotation, translation: step } = model.joint_transform(i, q);
             let joint = &model.topology.joints()[i];
-            self.path.push(Link { body: i, dofs: [joint.v, joint.kind.nv()], rotation, step });
+            let link = Link { body: i, dofs: [joint.v, joint.kind.nv()], rotation, step };
+            match self.path.get_mut(length) {
+                Some(last) if last.dofs == link.dofs => *last = link,
+                _ => {
+                    self.leave(length);
+                    self.path.push(link);
+                }
+            }
+            length += 1;
             ancestor = joint.parent;
         }
+        self.leave(length);
         // R_i = R_p R,  r = R_p (p_i − p_p)
         let mut parent = Mat3::identity();
         for link in self.path.iter_mut().rev() {
@@ -83,6 +89,13 @@ impl<T: Real> Jacobian<T> {
             way += step;
         }
         Ok(&self.columns)
+    }
+
+    /// Takes the links from number `length` on off the path. Their columns are zero then.
+    fn leave(&mut self, length: usize) {
+        for Link { dofs: [first, count], .. } in self.path.drain(length..) {
+            self.columns[first..][..count].fill(Motion::zero());
+        }
     }
 
     /// The columns of the last run; zero before the first.

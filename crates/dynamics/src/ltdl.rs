@@ -140,7 +140,7 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`NotPositiveDefinite`] when a pivot is not positive.
-    #[inline(never)]
+    #[inline]
     pub fn factor(&mut self) -> Result<(), NotPositiveDefinite> {
         let smallest = match Blocked::find() {
             Some(blocked) => (blocked.factor)(&mut self.matrix, &self.plan, &mut self.scratch),
@@ -178,7 +178,7 @@ impl<T: Real> Ltdl<T> {
     /// assert!(x.iter().all(|x| (x - 1.0).abs() < 1e-15));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[inline(never)]
+    #[inline]
     pub fn solve(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("right-hand side x", self.matrix.size(), x.len())?;
         match Blocked::find() {
@@ -287,6 +287,7 @@ impl<T: Real> Ltdl<T> {
 /// The plain factorization. Its result is valid only if the smallest pivot is positive.
 ///
 /// `L_ki = H_ki / D_k,  H_i· −= L_ki H_k·` for every dof k, the last first, and every strict ancestor i of k.
+#[inline(never)]
 fn eliminate<T: Real>(matrix: &mut TreeSparse<T>) -> Pivot {
     let mut smallest = Pivot::none();
     for k in (0..matrix.size()).rev() {
@@ -311,6 +312,7 @@ fn eliminate<T: Real>(matrix: &mut TreeSparse<T>) -> Pivot {
 }
 
 /// The plain solution: Lᵀ y = b from the leaves, D z = y, and L x = z from the root.
+#[inline(never)]
 fn solve_plainly<T: Real>(matrix: &TreeSparse<T>, x: &mut [T]) {
     triangular::solve_transposed::<T, true>(matrix, x);
     // D z = y

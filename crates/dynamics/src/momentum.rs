@@ -37,6 +37,17 @@ impl<T: Real> Momentum<T> {
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
     #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], v: &[T]) -> Result<CentroidalMomentum<T>, DimensionError> {
+        self.recurse(model, q, v)
+    }
+
+    /// [`Momentum::run`] as a part of its caller.
+    #[inline(always)]
+    pub(crate) fn recurse<P: Real + Lift<T>>(
+        &mut self,
+        model: &Model<P>,
+        q: &[T],
+        v: &[T],
+    ) -> Result<CentroidalMomentum<T>, DimensionError> {
         let Self { center, sums } = self;
         center.kinematics.place(model, q)?;
         center.kinematics.set_moving(model, v)?;

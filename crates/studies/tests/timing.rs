@@ -54,7 +54,7 @@ fn everyone_has_times_ratios_and_intervals_beside_a_control() {
     let rows = &*HONEST;
     for (quantity, methods) in [("id", 2), ("fd", 6)] {
         for (engine, timed) in [("featherbench", if quantity == "fd" { 2 } else { 1 }), ("double", methods)] {
-            let found = of(&rows, engine, quantity, "ns_per_call");
+            let found = of(rows, engine, quantity, "ns_per_call");
             assert_eq!(found.len(), 2 * timed, "{engine} {quantity}: stream and hot");
             assert!(found.iter().all(|row| row.value.is_some_and(|ns| ns > 0.0) && row.verdict == Verdict::Info && row.unit == "ns"));
             for row in found {
@@ -63,12 +63,12 @@ fn everyone_has_times_ratios_and_intervals_beside_a_control() {
                 assert!(params["p10"].as_f64() <= params["p90"].as_f64() && params["p10"].is_f64(), "{params}");
             }
         }
-        assert_eq!(of(&rows, "featherbench", quantity, "control").len(), 2);
-        for row in of(&rows, "double", quantity, "ratio") {
+        assert_eq!(of(rows, "featherbench", quantity, "control").len(), 2);
+        for row in of(rows, "double", quantity, "ratio") {
             assert!(row.ci_low <= row.value && row.value <= row.ci_high && row.ci_low.is_some());
             assert_eq!(row.reference, if quantity == "id" { "featherbench rnea" } else { "featherbench aba" });
         }
-        assert!(of(&rows, "double", quantity, "worst_error").iter().all(|row| row.verdict == Verdict::Pass));
+        assert!(of(rows, "double", quantity, "worst_error").iter().all(|row| row.verdict == Verdict::Pass));
     }
     let machine: Vec<_> = rows.iter().filter(|row| row.quantity == "machine").collect();
     assert_eq!(

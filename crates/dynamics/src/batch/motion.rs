@@ -188,7 +188,7 @@ impl Kernel<2> for OfMomentum {
         _: Option<&[Force<T>]>,
     ) -> (&'w [T], Result<(), Error>) {
         let Motions { momentum, result, .. } = &mut workspace.motions;
-        let done = made(momentum, &model.topology, Momentum::new).run(model, q, v);
+        let done = made(momentum, &model.topology, Momentum::new).recurse(model, q, v);
         result.clear();
         match done {
             Ok(found) => {
