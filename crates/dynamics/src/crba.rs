@@ -222,7 +222,8 @@ fn project<T: Real, P: Real + Lift<T>>(
     let [nx, ny, nz] = forces.ang.each_ref().map(|component| &component[first..last]);
     let [fx, fy, fz] = forces.lin.each_ref().map(|component| &component[first..last]);
     let (ang, lin) = (nx.iter().zip(ny).zip(nz), fx.iter().zip(fy).zip(fz));
-    let values = &mut values[position..];
+    // Without rows the part may end before the position.
+    let values = values.get_mut(position..).unwrap_or_default();
     for (row, (((nx, ny), nz), ((fx, fy), fz))) in rows.iter().zip(ang.zip(lin)) {
         let f = Force::new(Vec3::new(*nx, *ny, *nz), Vec3::new(*fx, *fy, *fz));
         values[row.start - start] = match kind {
