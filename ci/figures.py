@@ -13,7 +13,7 @@ import re
 import sys
 from pathlib import Path
 
-#: As in crates/results/src/diff.rs.
+#: As in crates/harness/results/src/diff.rs.
 FACTOR, FLOOR = 4.0, 8.9e-16
 
 

@@ -1,7 +1,7 @@
 //! Arrays of numpy as slices: checked by name, and not copied where they are contiguous.
 
 use crate::Error;
-use featherbench_library::dynamics::Number;
+use featherbench_rbd::dynamics::Number;
 use numpy::{
     Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArray,
     PyUntypedArrayMethods,

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::robot::Robot;
 use crate::states::{Argument, failed, map};
-use featherbench_library::{Convention, Robot as Library};
+use featherbench_rbd::{Convention, Robot as Library};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
@@ -22,7 +22,7 @@ impl Robot {
         py: Python<'py>,
         argument: Argument<'_, 'py>,
         size: usize,
-        f: impl Fn(&Library, &[f64]) -> Result<Vec<f64>, featherbench_library::Error> + Sync,
+        f: impl Fn(&Library, &[f64]) -> Result<Vec<f64>, featherbench_rbd::Error> + Sync,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         map(py, self, [argument], &[size], Some(1), |workspace, [x], out| {
             out.copy_from_slice(&f(workspace.robot(), x)?);

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::arrays::{Scalar, is_double, numbers, output};
 use crate::robot::Robot;
 use crate::states::{Argument, agreed, failed, map, pool, threads as threads_of};
-use featherbench_library::dynamics::{Batch, BatchError, Element as BatchElement};
+use featherbench_rbd::dynamics::{Batch, BatchError, Element as BatchElement};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 

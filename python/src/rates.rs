@@ -3,7 +3,7 @@
 use crate::coordinates::convention;
 use crate::robot::Robot;
 use crate::states::map;
-use featherbench_library::{Convention, Robot as Library};
+use featherbench_rbd::{Convention, Robot as Library};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
@@ -15,7 +15,7 @@ impl Robot {
         engine: &str,
         q: &Bound<'py, PyAny>,
         (name, x): (&'static str, &Bound<'py, PyAny>),
-        f: impl Fn(&Library, Convention, &[f64], &[f64]) -> Result<Vec<f64>, featherbench_library::Error> + Sync,
+        f: impl Fn(&Library, Convention, &[f64], &[f64]) -> Result<Vec<f64>, featherbench_rbd::Error> + Sync,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (engine, nq, nv) = (convention(engine)?, self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), (name, x, nv)], &[nv], Some(1), |workspace, [q, x], out| {
@@ -30,7 +30,7 @@ impl Robot {
         py: Python<'py>,
         engine: &str,
         [q, v, a]: [&Bound<'py, PyAny>; 3],
-        f: impl Fn(&Library, Convention, &[f64], &[f64], &[f64]) -> Result<Vec<f64>, featherbench_library::Error> + Sync,
+        f: impl Fn(&Library, Convention, &[f64], &[f64], &[f64]) -> Result<Vec<f64>, featherbench_rbd::Error> + Sync,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (engine, nq, nv) = (convention(engine)?, self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), ("v", v, nv), ("a", a, nv)], &[nv], Some(1), |workspace, [q, v, a], out| {

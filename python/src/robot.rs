@@ -2,7 +2,7 @@
 
 use crate::arrays::output;
 use crate::states::{failed, map};
-use featherbench_library::{Error, Robot as Library, Workspace};
+use featherbench_rbd::{Error, Robot as Library, Workspace};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -213,7 +213,7 @@ impl Robot {
     /// The joints, in the order of their numbers.
     #[getter]
     fn joints(&self) -> Vec<Joint> {
-        let joint = |joint: &featherbench_library::Joint| Joint {
+        let joint = |joint: &featherbench_rbd::Joint| Joint {
             name: joint.name.clone(),
             kind: joint.kind.name().to_owned(),
             q: (joint.q.start, joint.q.end),

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::arrays::{States, numbers, output};
 use crate::robot::Robot;
-use featherbench_library::{Error as LibraryError, Workspace};
+use featherbench_rbd::{Error as LibraryError, Workspace};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use rayon::prelude::*;

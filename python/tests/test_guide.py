@@ -54,7 +54,7 @@ def test_ten_lines_of_rust_end_in_the_number_of_pinocchio():
     due = shoulder()
     if shutil.which("cargo") is None:
         pytest.skip("cargo is not installed")
-    command = ["cargo", "run", "--release", "--quiet", "-p", "featherbench-library", "--example", "ten_lines"]
+    command = ["cargo", "run", "--release", "--quiet", "-p", "featherbench-rbd", "--example", "ten_lines"]
     out = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     printed, told = SHOULDER.search(out), SHOULDER.search((GUIDE / "rust.md").read_text())
     assert printed is not None

@@ -14,10 +14,10 @@ use crate::{compared, outcome, report, robot_file, run, say, table};
 use ::featherbench_results::{ModelOrigin, Verdict};
 use featherbench_bench::run::{Opening, Run};
 use featherbench_bench::{Cell, Context, Engine, Engines, FileFormat, OWN, Robot, RobotFile, hash, provenance};
+use featherbench_comparison::import::answers;
+use featherbench_comparison::{Agreement, Import};
 use featherbench_engines::Limits;
 use featherbench_model::Warning;
-use featherbench_studies::import::answers;
-use featherbench_studies::{Agreement, Import};
 use std::time::{Duration, Instant, SystemTime};
 
 /// States per robot, besides the keyframes of its file: one of each case.
@@ -98,7 +98,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     run.info.expected = robots.iter().flat_map(conditions).collect();
     run.info.drawings = run::drawings(&run.info, &records, &robots);
     run.info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
-    run.write(&records, &featherbench_studies::dictionary(&records))?;
+    run.write(&records, &featherbench_registry::dictionary(&records))?;
     let page = report::render(&folder, &run.info, &records)?;
     let info = &run.info;
     let unmet: Vec<_> = info.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).collect();

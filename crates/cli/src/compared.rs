@@ -4,7 +4,7 @@ use crate::fail::Fail;
 use crate::outcome::{neutral, params};
 use ::featherbench_results::{Row, RunInfo};
 use featherbench_bench::Robot;
-use featherbench_studies::import::{Answer, answers};
+use featherbench_comparison::import::{Answer, answers};
 use serde_json::{Value, json};
 use std::path::Path;
 

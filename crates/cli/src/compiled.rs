@@ -227,7 +227,8 @@ mod tests {
             ["contact", "dynamics", "formats", "model", "protocol", "robots", "scenes", "spatial"].map(|name| format!("crates/{name}"));
         assert_eq!(crates("rapier").unwrap(), rapier);
         assert_eq!(crates("dynibo").unwrap(), ["oracles/interface"]);
-        let factorizing = ["crates/dynamics", "oracles/factors", "oracles/interface", "crates/model", "crates/spatial"];
+        let factorizing =
+            ["crates/mechanics/dynamics", "oracles/factors", "oracles/interface", "crates/mechanics/model", "crates/mechanics/spatial"];
         assert_eq!(crates("faer").unwrap(), factorizing);
         assert_eq!(crates("nalgebra").unwrap(), factorizing);
         assert!(crates("no-such-engine").unwrap_err().contains("no-such-engine"));
@@ -241,7 +242,7 @@ mod tests {
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
             std::fs::write(path, text).unwrap();
         };
-        for name in ["crates/model", "crates/formats", "oracles/interface", "oracles/rapier"] {
+        for name in ["crates/mechanics/model", "crates/mechanics/formats", "oracles/interface", "oracles/rapier"] {
             write(&format!("{name}/src/deep/a.rs"), "one");
         }
         let lock = ["formats", "interface", "model", "rapier"].map(|name| format!("name = \"featherbench-{name}\"\n")).concat();
@@ -253,14 +254,14 @@ mod tests {
         for path in [
             "oracles/rapier/build.rs",
             "oracles/interface/src/deep/a.rs",
-            "crates/model/src/deep/a.rs",
-            "crates/formats/src/b.rs",
+            "crates/mechanics/model/src/deep/a.rs",
+            "crates/mechanics/formats/src/b.rs",
             "Cargo.toml",
         ] {
             write(path, "another");
             seen.push(sources(folder.path()).unwrap());
         }
-        write("crates/formats/tests/c.rs", "a test is no part of it");
+        write("crates/mechanics/formats/tests/c.rs", "a test is no part of it");
         assert_eq!(sources(folder.path()).ok().as_ref(), seen.last());
         let of = seen.len();
         seen.sort();

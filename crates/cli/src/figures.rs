@@ -4,9 +4,9 @@
 use crate::fail::Fail;
 use crate::say::say;
 use ::featherbench_results::{RunInfo, atomic_write};
+use featherbench_registry::FIGURES;
 use featherbench_report::Section;
 use featherbench_report::figure::Figure;
-use featherbench_studies::FIGURES;
 use std::path::Path;
 use std::process::{Command, Stdio};
 

@@ -7,7 +7,7 @@ use crate::root::Root;
 use crate::say::say;
 use ::featherbench_results::{CSV_NAME, Host, RUN_NAME, Row, RunInfo, atomic_write, read_run};
 use featherbench_report::runs::{self, Past};
-use featherbench_studies::InstructionCounts;
+use featherbench_speed::InstructionCounts;
 use std::path::Path;
 
 /// The header of a history file.

@@ -1,7 +1,7 @@
 //! Instruction counts, as `ci/instructions.py --out` writes them.
 
 use crate::fail::Fail;
-use featherbench_studies::InstructionCounts;
+use featherbench_speed::InstructionCounts;
 use std::path::Path;
 
 /// Reads them.

@@ -8,8 +8,9 @@ use crate::root::Root;
 use crate::say::{self, say};
 use featherbench_bench::{Cell, Context, Engine, Factor, Planted, Robot, Suite};
 use featherbench_engines::{Featherbench, Limits};
+use featherbench_registry::Setup;
 use featherbench_robots::Family;
-use featherbench_studies::{Kernels, Setup};
+use featherbench_study::Kernels;
 use serde_json::{Value, json};
 
 /// Prints what there is to run.
@@ -70,7 +71,7 @@ fn cells(root: &Root, loaded: &Loaded) -> Result<Vec<Cell>, Fail> {
     let (kernels, reproduce) = (featherbench_engines::timed as Kernels, oracles::reproducer(root, Limits::default()));
     let measure = oracles::measurer(root)?;
     let setup = Setup { suite: &loaded.suite, live: true, program: "", kernels, reproduce, measure };
-    let studies = featherbench_studies::of_suite(&setup)?;
+    let studies = featherbench_registry::of_suite(&setup)?;
     Ok(studies.iter().flat_map(|study| study.plan(&context)).collect())
 }
 
@@ -108,7 +109,7 @@ fn json(root: &Root, args: &ListArgs) -> Result<Value, Fail> {
         "suites": suites.collect::<Vec<_>>(),
         "engines": names(described.names(|engine| !engine.is_native())),
         "timed": names(described.names(|engine| engine.clock.is_some())),
-        "studies": featherbench_studies::names(),
+        "studies": featherbench_registry::names(),
         "families": Family::NAMES,
     }))
 }
@@ -142,7 +143,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
     let described = oracles::described(root)?;
     text += &format!("\nengines:  featherbench, {}\n", described.names(|engine| !engine.is_native()).join(", "));
     text += &format!("timed:    featherbench, {}\n", described.names(|engine| engine.clock.is_some()).join(", "));
-    text += &format!("studies:  {}\n", featherbench_studies::names().join(", "));
+    text += &format!("studies:  {}\n", featherbench_registry::names().join(", "));
     text += "\nfamilies of generated robots, with their parameters:\n";
     for name in Family::NAMES {
         let family = Family::parse(name).map_err(|error| Fail::input(error.to_string()))?;

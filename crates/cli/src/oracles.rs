@@ -148,7 +148,7 @@ pub fn start(root: &Root, engine: &DescribedEngine, limits: Limits) -> Result<Or
 }
 
 /// Evaluates reproductions of known deviations in the engines' environment.
-pub fn reproducer(root: &Root, limits: Limits) -> featherbench_studies::Reproduce {
+pub fn reproducer(root: &Root, limits: Limits) -> featherbench_study::Reproduce {
     let command = python(root).ok_or_else(|| MISSING.to_owned()).and_then(|python| package::command(root, &python, "reproduce"));
     Arc::new(move |name, seeds| match &command {
         Ok(command) => featherbench_engines::reproduce(command, limits, name, seeds),

@@ -2,7 +2,7 @@
 
 use ::featherbench_results::{Culprit, Expectation, GateKind, Row, Verdict};
 use featherbench_bench::{Engine, Robot, measure::worst};
-use featherbench_studies::import::bound;
+use featherbench_comparison::import::bound;
 use serde_json::Value;
 
 /// The questions of all engines about a robot; `strict` counts what is only not read, and rounding, as well.

@@ -1,4 +1,4 @@
-//! Parquet, by a program of its own: `featherbench-parquet`, of `crates/parquet`. It is built when it is first asked for, so that who never asks for
+//! Parquet, by a program of its own: `featherbench-parquet`, of `crates/harness/parquet`. It is built when it is first asked for, so that who never asks for
 //! Parquet never compiles it.
 
 use crate::compiled::cargo_build;
@@ -14,7 +14,7 @@ const NAME: &str = "featherbench-parquet";
 /// The checkout that this program was built in.
 const CHECKOUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 /// The sources of the program, in the checkout.
-const SOURCES: [&str; 2] = ["crates/parquet/src", "crates/results/src"];
+const SOURCES: [&str; 2] = ["crates/harness/parquet/src", "crates/harness/results/src"];
 /// What the program's errors begin with.
 const ERROR: &str = "error: ";
 /// How this program was compiled: cargo's name of the folder. The other is compiled alike.
@@ -46,7 +46,7 @@ fn ask(arguments: &[&OsStr]) -> Result<String, Fail> {
 
 fn missing(reason: String) -> Fail {
     let advice = format!(
-        "Parquet is read and written by a program of its own, which cargo builds from crates/parquet when it is first asked for; \
+        "Parquet is read and written by a program of its own, which cargo builds from crates/harness/parquet when it is first asked for; \
          try again with cargo and a network, or put {NAME} beside this program. CSV needs none of it: rows.csv has the same rows, \
          and `identify` takes a log in CSV"
     );
@@ -147,11 +147,11 @@ mod tests {
         // Without sources nothing is older.
         write(&places.beside, 10);
         assert_eq!(places.found(), Ok(Some(places.beside.clone())));
-        write(&checkout.join("crates/parquet/src/lib.rs"), 12);
-        write(&checkout.join("crates/results/src/deep/row.rs"), 11);
-        write(&checkout.join("crates/bench/src/lib.rs"), 1);
+        write(&checkout.join("crates/harness/parquet/src/lib.rs"), 12);
+        write(&checkout.join("crates/harness/results/src/deep/row.rs"), 11);
+        write(&checkout.join("crates/harness/bench/src/lib.rs"), 1);
         assert_eq!(places.found(), Ok(Some(places.beside.clone())));
-        write(&checkout.join("crates/results/src/deep/row.rs"), 9);
+        write(&checkout.join("crates/harness/results/src/deep/row.rs"), 9);
         assert_eq!(places.found(), Ok(None));
     }
 
@@ -173,6 +173,6 @@ mod tests {
         let reason = places.build().unwrap_err();
         let fail = missing(reason);
         let said = fail.to_string();
-        assert!(matches!(fail, Fail::Missing { .. }) && said.contains("gone") && said.contains("crates/parquet"), "{said}");
+        assert!(matches!(fail, Fail::Missing { .. }) && said.contains("gone") && said.contains("crates/harness/parquet"), "{said}");
     }
 }

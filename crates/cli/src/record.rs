@@ -12,8 +12,9 @@ use ::featherbench_results::Verdict;
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
 use featherbench_bench::run::Progress;
 use featherbench_bench::{Cell, Context, Gates, Outcome, OutcomeStore, Quantity, Robot, SLACK, Study};
+use featherbench_comparison::{Agreement, Repeatability};
 use featherbench_engines::{EngineRecording, Limits, Recording, recording_name};
-use featherbench_studies::{Agreement, OperationCounts, Repeatability};
+use featherbench_speed::OperationCounts;
 use std::path::Path;
 
 /// An answer may move by this much, unit-free, before the recording counts as stale: the same binary on the same processor.

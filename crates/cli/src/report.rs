@@ -7,8 +7,8 @@ use crate::gate;
 use crate::instructions;
 use crate::say::say;
 use ::featherbench_results::{Row, RunInfo};
+use featherbench_reduction::{CATALOGUE, Catalogue};
 use featherbench_report::{Findings, Section};
-use featherbench_studies::reduce::{CATALOGUE, Catalogue};
 use std::path::{Path, PathBuf};
 
 /// Writes the report of a finished run again, and its figures for a paper and opens it if that is wanted.
@@ -17,7 +17,7 @@ pub fn write(args: &ReportArgs) -> Result<(), Fail> {
     let page = render(&args.folder, &info, &records)?;
     if let Some(folder) = &args.figures {
         let counts = args.instructions.as_deref().map(instructions::read).transpose()?;
-        let counted = counts.map(|counts| featherbench_studies::instructions(&info, &records, &counts));
+        let counted = counts.map(|counts| featherbench_speed::instructions(&info, &records, &counts));
         figures::write(folder, &info, &sections(&args.folder, &info, &records)?, counted)?;
     }
     say!("report: {}", page.display());
@@ -33,13 +33,13 @@ pub fn render(folder: &Path, info: &RunInfo, records: &[Row]) -> Result<PathBuf,
 
 /// The sections of a run's report: those of its studies, and that of the catalogue of its failures, if `reduce` has made one.
 fn sections(folder: &Path, info: &RunInfo, records: &[Row]) -> Result<Vec<Section>, Fail> {
-    let catalogue = Catalogue::read(&folder.join(CATALOGUE))?.map(|catalogue| featherbench_studies::reduce::section(&catalogue));
-    Ok(featherbench_studies::sections(info, records).into_iter().chain(catalogue).collect())
+    let catalogue = Catalogue::read(&folder.join(CATALOGUE))?.map(|catalogue| featherbench_reduction::section(&catalogue));
+    Ok(featherbench_registry::sections(info, records).into_iter().chain(catalogue).collect())
 }
 
 /// Prints whether the run passed, what was found and how fast we are, and the report's page last.
 pub fn conclude(info: &RunInfo, records: &[Row], page: &Path, open: bool) -> Result<(), Fail> {
-    let sections = featherbench_studies::sections(info, records);
+    let sections = featherbench_registry::sections(info, records);
     featherbench_report::summary(info, records, &sections).iter().for_each(|line| say!("{line}"));
     say!("report: {}", page.display());
     show(page, open)?;

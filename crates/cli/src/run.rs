@@ -15,8 +15,8 @@ use crate::shard;
 use ::featherbench_results::{Culprit, Drawing, Expectation, GateKind, Row, RunInfo, quoted};
 use featherbench_bench::run::{Opening, Run};
 use featherbench_bench::{Cell, Context, Counts, Gates, Robot, Study, drawing, provenance};
+use featherbench_registry::Setup;
 use featherbench_report::Findings;
-use featherbench_studies::Setup;
 use regex_lite::Regex;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -94,7 +94,7 @@ impl Prepared {
         run.info.expected.extend(more);
         run.info.drawings = drawings(&run.info, rows, &self.loaded.robots);
         run.info.seconds.insert("total".into(), self.start.elapsed().as_secs_f64());
-        run.write(rows, &featherbench_studies::dictionary(rows))?;
+        run.write(rows, &featherbench_registry::dictionary(rows))?;
         let page = report::render(&run.folder, &run.info, rows)?;
         report::conclude(&run.info, rows, &page, args.open)
     }
@@ -152,7 +152,7 @@ fn studies(root: &Root, loaded: &Loaded, args: &RunArgs, program: &str) -> Resul
     let reproduce = oracles::reproducer(root, engines::limits(args));
     let measure = oracles::measurer(root)?;
     let setup = Setup { suite: &loaded.suite, live: args.live, program, kernels: featherbench_engines::timed, reproduce, measure };
-    let mut studies = featherbench_studies::of_suite(&setup)?;
+    let mut studies = featherbench_registry::of_suite(&setup)?;
     studies.retain(|study| !(args.no_timing && study.measures_time()));
     Ok(studies)
 }

@@ -3,7 +3,7 @@
 use crate::outcome::{neutral, params};
 use ::featherbench_results::{Row, Verdict};
 use featherbench_bench::{Engine, Robot};
-use featherbench_studies::import::{Answer, LARGEST, repairs};
+use featherbench_comparison::import::{Answer, LARGEST, repairs};
 use serde_json::Value;
 use std::collections::BTreeMap;
 

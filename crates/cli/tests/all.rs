@@ -19,7 +19,7 @@ mod residuals;
 mod resume;
 mod schema;
 mod shards;
-#[path = "../../robots/tests/share.rs"]
+#[path = "../../mechanics/robots/tests/share.rs"]
 mod share;
 mod support;
 mod uncertainty;

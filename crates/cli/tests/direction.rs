@@ -224,8 +224,7 @@ fn kernels_depend_on_few_crates_of_others() {
 /// The library crate is for programs that are no benchmark: nothing of the harness comes with it, in no feature.
 #[test]
 fn the_library_reaches_five_crates_of_ours() {
-    let text =
-        cargo(&["tree", "--offline", "--edges", "normal", "--prefix", "none", "--all-features", "--package", "featherbench-library"]);
+    let text = cargo(&["tree", "--offline", "--edges", "normal", "--prefix", "none", "--all-features", "--package", "featherbench-rbd"]);
     let ours: BTreeSet<&str> = text.lines().filter_map(|line| line.split_whitespace().next()).filter_map(short).collect();
     assert_eq!(ours, BTreeSet::from(["dynamics", "formats", "library", "model", "robots", "spatial"]));
 }

@@ -38,9 +38,9 @@ mod support;
 mod written;
 
 use featherbench_bench::{Engine, FileBase, FileFormat, RobotFile};
+use featherbench_comparison::import::{Cause, Comparison, Difference, Field};
 use featherbench_engines::{Limits, Oracle};
 use featherbench_lesson::Language;
-use featherbench_studies::import::{Cause, Comparison, Difference, Field};
 use std::ffi::OsString;
 use std::path::Path;
 use std::process::{Command, ExitCode};

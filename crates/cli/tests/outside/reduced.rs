@@ -2,7 +2,7 @@
 
 use super::Outcome;
 use crate::support::{Ended, project};
-use featherbench_studies::reduce::Catalogue;
+use featherbench_reduction::Catalogue;
 use std::path::Path;
 use std::process::Command;
 

@@ -1,0 +1,84 @@
+//! Identification: what do logs tell of a robot's parameters, and do estimators find them?
+//!
+//! Robots whose ranks follow a law, and robots whose true parameters are known:
+//!
+//! - `ranks.rs`: ranks of the torque regressor by three ways, against the laws;
+//! - `estimates.rs`: estimators without noise, the scatter of repeats, intervals, held-out error;
+//! - `bodies.rs`: which parameters a body can have, log-Cholesky numbers, exciting trajectories;
+//! - `witness.rs`: the same samples through the regressors of other engines, in live runs.
+
+mod bodies;
+mod estimates;
+mod ranks;
+pub(crate) mod section;
+#[cfg(test)]
+mod tests;
+mod witness;
+pub(crate) mod words;
+
+use featherbench_bench::{Cell, Context, Finished, NoSettings, Outcome, Robot, Study};
+use featherbench_results::Row;
+use featherbench_study::known::{Case, KnownAnswers, Number, count, error, failed, largest, told};
+use featherbench_study::{Entry, Made, Setup};
+
+/// The study's name in rows.
+const STUDY: &str = "identification";
+
+/// The study in the registry.
+pub const ENTRY: Entry = Entry { name: "identification", make: of_suite, sections: section::sections, words: words::WORDS };
+
+/// The study, if the suite asks for it.
+fn of_suite(setup: &Setup) -> Made {
+    let live = setup.live;
+    Ok(setup.suite.settings::<NoSettings>(STUDY)?.map(|_| Box::new(Identification::new(live)) as _))
+}
+
+/// Every case.
+fn cases() -> Vec<Case> {
+    [ranks::cases(), estimates::cases(), bodies::cases()].into_iter().flatten().collect()
+}
+
+/// Known answers, and in live runs the witnesses.
+struct Identification {
+    known: KnownAnswers,
+    /// The engines that are asked if they are installed.
+    witnesses: Vec<String>,
+}
+
+impl Identification {
+    fn new(live: bool) -> Self {
+        let witnesses = if live { vec!["pinocchio".to_owned(), "drake".to_owned()] } else { Vec::new() };
+        Self { known: KnownAnswers::new(STUDY, cases()), witnesses }
+    }
+}
+
+impl Study for Identification {
+    fn name(&self) -> &'static str {
+        STUDY
+    }
+
+    fn engines(&self) -> &[String] {
+        &self.witnesses
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        let witnesses = if self.witnesses.is_empty() { Vec::new() } else { witness::plan(context) };
+        self.known.plan(context).into_iter().chain(witnesses).collect()
+    }
+
+    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+        if witness::is_of(cell) { witness::evaluate(context, cell).into() } else { self.known.evaluate(context, cell) }
+    }
+
+    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
+        Vec::new()
+    }
+
+    fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
+        let mut rows = self.known.compare_all(context, finished);
+        rows.extend(
+            finished.iter().filter(|(cell, _)| witness::is_of(cell)).flat_map(|(cell, outcome)| witness::rows(context, cell, outcome)),
+        );
+        rows
+    }
+}

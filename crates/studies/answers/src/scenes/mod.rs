@@ -1,0 +1,153 @@
+//! Scenes: what do engines make of bodies in contact whose motion is known?
+//!
+//! The scenes are those of `featherbench_scenes::library`. Each engine moves them by each of its variants, a contact model with a solver, at
+//! several steps. Of each number of a motion there is its error against rigid mechanics at each step, and the bias: what a line through the
+//! values at all steps leaves at dt = 0. Errors of other engines inform. A *law* is what an engine's own contact model should do where that
+//! is known (friction pyramids, creep); it is judged.
+//!
+//! - `movers.rs`: who moves scenes: our step with our solvers, our step with an engine's solver of contact problems, an engine;
+//! - `bounce.rs`: derivatives of a bounce by each engine against the exact one;
+//! - `rows.rs`: rows;
+//! - `drawing.rs`: a side view of a scene with its cones and forces.
+
+mod bounce;
+pub(crate) mod drawing;
+mod movers;
+mod rows;
+pub(crate) mod section;
+#[cfg(test)]
+mod tests;
+pub(crate) mod words;
+
+use featherbench_bench::{Cell, Context, Finished, Identity, NoAnswer, Outcome, Robot, Study, hash};
+use featherbench_results::{Row, canonical_json};
+use featherbench_scenes::{Question, library};
+use featherbench_study::{Entry, Made, Setup};
+use movers::Mover;
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+/// The study's name in rows.
+const STUDY: &str = "scenes";
+/// The quantities of its cells: motions, and the derivative of a bounce.
+const MOTION: &str = "scene_motion";
+const BOUNCE: &str = "bounce_derivative";
+/// The method and the scene of the one cell of an engine that is not there.
+const NONE: &str = "none";
+const EVERY: &str = "all scenes";
+
+/// The study of scenes.
+pub(crate) struct Scenes {
+    settings: Settings,
+    questions: Vec<Question>,
+}
+
+/// The table `[scenes]` of a suite.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Settings {
+    /// The engines that are asked beside ours if they are installed.
+    #[serde(default)]
+    engines: Vec<String>,
+}
+
+/// The study in the registry.
+pub const ENTRY: Entry = Entry { name: "scenes", make: of_suite, sections: section::sections, words: words::WORDS };
+
+/// The study, if the suite asks for it.
+fn of_suite(setup: &Setup) -> Made {
+    let settings = setup.suite.settings::<Settings>(STUDY)?;
+    Ok(settings.map(|settings| Box::new(Scenes { settings, questions: library::all() }) as _))
+}
+
+impl Scenes {
+    fn question(&self, cell: &Cell) -> Option<&Question> {
+        self.questions.iter().find(|question| question.scene.name == cell.robot)
+    }
+}
+
+/// An engine's name and version.
+fn of_engine(identity: &Identity) -> (&str, &str) {
+    (&identity.name, &identity.version)
+}
+
+/// A cell that belongs to no robot.
+fn cell(scene: &str, (engine, version): (&str, &str), method: &str, quantity: &str, params: Value) -> Cell {
+    Cell {
+        study: STUDY.into(),
+        robot: scene.into(),
+        robot_hash: hash::of(canonical_json(&params).as_bytes()),
+        params,
+        engine: engine.into(),
+        version: version.into(),
+        method: method.into(),
+        quantity: quantity.into(),
+        scalar: "f64".into(),
+    }
+}
+
+impl Study for Scenes {
+    fn name(&self) -> &'static str {
+        STUDY
+    }
+
+    fn engines(&self) -> &[String] {
+        &self.settings.engines
+    }
+
+    /// One cell for each engine that is asked and is not there, or moves no scenes: so a row says so.
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        let mut cells = Vec::new();
+        for name in &self.settings.engines {
+            let engine = context.engine(name);
+            if engine.is_none_or(|engine| movers::of(engine).is_empty()) {
+                let version = engine.map(|engine| engine.identity().version.clone()).unwrap_or_default();
+                cells.push(cell(EVERY, (name, &version), NONE, MOTION, json!({"settings": {}})));
+            }
+        }
+        for engine in context.engines {
+            let identity = engine.identity();
+            for (mover, variant) in movers::of(engine.as_ref()) {
+                for question in &self.questions {
+                    let scene = json!({"parameters": question.params, "duration": question.duration, "scene": question.scene});
+                    let params = json!({"scene": scene, "settings": variant.settings, "steps": question.dts, "mover": mover.name()});
+                    cells.push(cell(&question.scene.name, of_engine(identity), &variant.name, MOTION, params));
+                }
+            }
+        }
+        cells.extend(bounce::plan(context));
+        cells
+    }
+
+    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+        if cell.quantity == BOUNCE {
+            return bounce::evaluate(context, cell).into();
+        }
+        if cell.method == NONE {
+            let hint = format!("{0} is not installed, or moves no scenes: `featherbench oracles install {0}`", cell.engine);
+            return Outcome::NoAnswer(NoAnswer::NotOffered(hint));
+        }
+        let lost = |what: &str| Outcome::NoAnswer(NoAnswer::Failed(format!("there is no {what} of this cell")));
+        let Some(question) = self.question(cell) else { return lost("scene") };
+        let Some(engine) = context.engine(&cell.engine) else { return lost("engine") };
+        let Some(mover) = Mover::named(cell.params["mover"].as_str().unwrap_or_default()) else { return lost("mover") };
+        let values = question.dts.iter().map(|&dt| {
+            let motion = mover.simulate(engine, question, &cell.method, dt)?;
+            Ok(question.measures.iter().map(|measure| measure.of(&motion)).collect::<Vec<_>>())
+        });
+        values.collect::<Result<Vec<_>, NoAnswer>>().map(|values| values.concat()).into()
+    }
+
+    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
+        Vec::new()
+    }
+
+    fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
+        let of = |(cell, outcome): &Finished| match self.question(cell) {
+            Some(question) if cell.quantity == MOTION => rows::of_motion(context.gates, question, cell, outcome),
+            _ if cell.method == NONE => rows::of_absent(cell, outcome),
+            _ => bounce::rows(context.gates, cell, outcome),
+        };
+        finished.iter().flat_map(of).collect()
+    }
+}

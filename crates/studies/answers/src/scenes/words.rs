@@ -1,0 +1,51 @@
+//! The words of the study: its names in rows, and what they mean.
+
+use featherbench_study::Words;
+
+pub(crate) const WORDS: Words = Words {
+    quantities: &[
+        ("scene_motion", "a motion of the scene as a whole"),
+        ("bounce_derivative", "the derivative of a bounce by its start"),
+        ("affine_distance", "distance of the contact forces from an affine distribution"),
+        ("ball_acceleration", "acceleration of the ball"),
+        ("box_acceleration", "acceleration of the box"),
+        ("creep", "velocity of a body that should stick"),
+        ("drift", "sideways way of a body that should stand, over its height"),
+        ("energy_created", "energy that the contact creates, over that before"),
+        ("energy_ratio", "energy after an impact over that before"),
+        ("felt_friction", "the coefficient of friction that a sliding body feels"),
+        ("felt_restitution", "the coefficient of restitution that a bouncing body feels"),
+        ("lift", "the height to which a body rises that should stay on the ground"),
+        ("load_error", "the largest error of the forces between stacked bodies, over the largest force"),
+        ("normal_error", "error of the normal forces, over the weight"),
+        ("null_share", "share of the contact forces that no motion determines"),
+        ("penetration", "how deep a body is in the ground"),
+        ("pressure_offset", "how far the centre of pressure is from where it should be, over the half width"),
+        ("rolling_speed", "velocity at which a sliding sphere begins to roll"),
+        ("sinking", "how far a body sank, over its height"),
+        ("tip_slip", "way of a tip that should stick, over its length"),
+        ("way", "the way until a body rests"),
+        ("wrench_error", "error of the sum of the contact forces and moments"),
+    ],
+    metrics: &[
+        ("value", "the number at this step"),
+        ("error", "its distance from rigid mechanics, in the scale of the number"),
+        ("bias", "what a line through the values at all steps leaves at dt = 0, as an error"),
+        ("bias_uncertainty", "the standard error of that line at dt = 0"),
+        ("law_error", "relative distance from what the engine's own contact model should do"),
+        ("derivative_error", "the largest error of ∂(z, ż)(T)/∂(z, ż)(0), over the largest entry"),
+        ("dz_dz0", "∂z(T)/∂z(0)"),
+        ("dv_dz0", "∂ż(T)/∂z(0)"),
+        ("state_error", "relative error of the state at the end"),
+        ("spring_share", "the part of the derivative's error that the contact spring of this stiffness explains"),
+    ],
+    params: &[
+        ("scene", "the parameters of the scene"),
+        ("settings", "the settings of the engine's variant"),
+        ("duration", "how long it moves, in s"),
+        ("dt", "the step, in s"),
+        ("height", "the height of the start, in m"),
+        ("stiffness", "the stiffness of the ground, in N/m; null is a rigid one"),
+        ("cases", "stiffnesses and steps that were asked"),
+    ],
+};

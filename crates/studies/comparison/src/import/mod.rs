@@ -1,0 +1,132 @@
+//! Import: do the engines import one file alike, and if not, where and why do they differ?
+//!
+//! Every engine imports the file by its own parser and returns its robot ([`featherbench_bench::Engine::read`]). That description is
+//! compared body by body with the reference import, whatever frames it is written in ([`Comparison`]). The reference is our import of URDF,
+//! and that of MuJoCo's compiler of MJCF.
+//!
+//! A replay then tests whether all differences were found. The engine computes with the robot that it has imported, our kernels with the
+//! robot that it reports. If both agree, the description explains the engine's answers completely. If not, the row `unexplained` counts the
+//! smallest sub-trees that show the difference.
+
+mod account;
+mod align;
+mod answers;
+mod armature;
+mod cause;
+mod comparison;
+mod context;
+mod difference;
+mod fields;
+mod opening;
+mod pairs;
+mod replay;
+mod rows;
+pub(crate) mod section;
+mod subtree;
+pub(crate) mod words;
+
+pub use answers::{Answer, Largest, Loads, answers, repairs};
+pub use comparison::{Comparison, Finding};
+pub use difference::{Cause, Class, Difference, Field, Weight};
+pub use replay::Effect;
+pub use subtree::{SubTree, bound};
+
+use featherbench_bench::{
+    Cell, Context, Engine, FileFormat, Finished, Import as Read, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study,
+};
+use featherbench_results::Row;
+use featherbench_study::{Entry, Made, Setup};
+use serde_json::{Value, json};
+
+/// The import study.
+pub struct Import;
+
+/// The study in the registry.
+pub const ENTRY: Entry = Entry { name: "import", make: of_suite, sections: section::sections, words: words::WORDS };
+
+/// The study, if the suite asks for it and the engines themselves are asked: what they read from files is not recorded.
+fn of_suite(setup: &Setup) -> Made {
+    Ok(setup.suite.settings::<NoSettings>("import")?.filter(|_| setup.live).map(|_| Box::new(Import) as _))
+}
+
+/// The cells of an engine: its import, and its answers afterwards.
+const READING: &str = "import";
+/// The method of an import.
+const PARSER: &str = "parser";
+/// The quantities of an imported robot.
+const COMPUTED: [Quantity; 2] = [Quantity::InverseDynamics, Quantity::MassMatrix];
+/// Robots with more degrees of freedom are compared by their descriptions alone. Whole mass matrices at all states would take gigabytes,
+/// several times over (8 n² bytes a state; 18 MB here).
+pub const LARGEST: usize = 1500;
+
+impl Study for Import {
+    fn name(&self) -> &'static str {
+        "import"
+    }
+
+    fn compares_all(&self) -> bool {
+        false
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        let mut cells = Vec::new();
+        for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
+            let Some(params) = params(robot) else { continue };
+            // Our own import is the robot itself.
+            for engine in context.engines.iter().filter(|engine| engine.identity().name != "featherbench") {
+                let cell =
+                    |quantity: &str, method: String| Cell::new(self.name(), robot, engine.identity(), quantity, method, params.clone());
+                cells.push(cell(READING, PARSER.into()));
+                let usual = |quantity: Quantity| Some((quantity.name(), engine.methods(quantity).into_iter().next()?));
+                let computed = COMPUTED.into_iter().filter(|_| robot.states.nv <= LARGEST);
+                cells.extend(computed.filter_map(usual).map(|(quantity, method)| cell(quantity, method)));
+            }
+        }
+        cells
+    }
+
+    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+        let lost = |what: &str| Outcome::NoAnswer(NoAnswer::Failed(format!("there is no {what} of this cell")));
+        let Some(robot) = context.robot(&cell.robot) else { return lost("robot") };
+        let Some(engine) = context.engine(&cell.engine) else { return lost("engine") };
+        let Some(file) = &robot.file else { return lost("file") };
+        match (engine.read(file), Quantity::parse(&cell.quantity)) {
+            (Err(no_answer), _) => Outcome::NoAnswer(no_answer),
+            (Ok(reading), None) => reading.to_text().map_or_else(|reason| Outcome::NoAnswer(NoAnswer::Failed(reason)), Outcome::Text),
+            (Ok(reading), Some(quantity)) => computed(robot, &reading, engine, quantity, &cell.method).into(),
+        }
+    }
+
+    fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
+        rows::rows(context, robot, finished)
+    }
+}
+
+/// The other parameters of the work, besides robot and engine.
+fn params(robot: &Robot) -> Option<Value> {
+    let file = robot.file.as_ref()?;
+    Some(json!({"base": file.base.name(), "format": file.format.name(), "states": robot.states.count()}))
+}
+
+/// The engine whose import is the reference of a file.
+fn reference(format: FileFormat) -> &'static str {
+    match format {
+        FileFormat::Urdf => "featherbench",
+        FileFormat::Mjcf => "mujoco",
+    }
+}
+
+/// The robot as an engine imported it, at the states of our import.
+fn as_read(robot: &Robot, reading: &Read) -> Result<Robot, NoAnswer> {
+    let states = |model: &featherbench_model::Model<f64>| replay::carried(&robot.description, &robot.states, &reading.description, model);
+    robot.as_read(reading, states).map_err(|error| NoAnswer::Failed(error.to_string()))
+}
+
+fn computed(robot: &Robot, reading: &Read, engine: &dyn Engine, quantity: Quantity, method: &str) -> Result<Vec<f64>, NoAnswer> {
+    let robot = as_read(robot, reading)?;
+    let count = robot.states.count();
+    let mut prepared = engine.prepare(&robot, quantity, method, &robot.states)?;
+    prepared.run(0..count)?;
+    let (values, due) = (prepared.read().to_vec(), count * quantity.size(&robot));
+    if values.len() == due { Ok(values) } else { Err(NoAnswer::Failed(format!("{} numbers came, {due} are due", values.len()))) }
+}

@@ -1,0 +1,219 @@
+//! The rows of one robot: each engine's import, its differences, their effect, and whether they explain the engine's answers.
+
+use super::replay::{Answers, Reference, Replay, carried, replay};
+use super::subtree::{SubTree, unexplained};
+use super::{Class, Comparison, Effect, Finding, LARGEST, READING, Weight, armature, as_read, bound, reference};
+use featherbench_bench::measure::worst;
+use featherbench_bench::{Cell, Context, FileFormat, Finished, Import, ImportNote, NoAnswer, Outcome, Quantity, Robot};
+use featherbench_results::{Row, Verdict, canonical_json};
+use featherbench_study::row;
+use serde_json::{Value, json};
+
+/// The rows of a robot, engine by engine.
+pub(super) fn rows(context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
+    let imports: Vec<(&Cell, Result<Import, NoAnswer>)> =
+        finished.iter().filter(|(cell, _)| cell.quantity == READING).map(|(cell, outcome)| (cell, imported(outcome))).collect();
+    let mut rows = Vec::new();
+    for (cell, import) in &imports {
+        let of_engine: Vec<&Finished> =
+            finished.iter().filter(|(other, _)| other.engine == cell.engine && other.quantity != READING).collect();
+        let engine = OfEngine { context, robot, cell, of_engine, compiler: compiler(robot, &imports) };
+        match import {
+            Ok(import) => rows.extend(engine.read(import)),
+            Err(no_answer) => rows.push(engine.refused(cell, no_answer)),
+        }
+    }
+    rows
+}
+
+/// The import that an outcome holds.
+fn imported(outcome: &Outcome) -> Result<Import, NoAnswer> {
+    match outcome {
+        Outcome::Text(text) => Import::from_text(text).map_err(NoAnswer::Failed),
+        Outcome::NoAnswer(no_answer) => Err(no_answer.clone()),
+        Outcome::Values(_) => Err(NoAnswer::Failed("the outcome is numbers, and a robot is due".into())),
+    }
+}
+
+/// The number of mass-matrix entries computed for the effects of single differences: some ten seconds. A robot of a hundred dofs and six
+/// states has the effect of each of 60 000 differences, one of a thousand dofs that of the first 600. The others have none.
+const WORK: usize = 4_000_000_000;
+/// The number of differences with an effect, however large the robot is.
+const LEAST_ALONE: usize = 8;
+
+/// The notes of MuJoCo's compiler, whose import is the reference of an MJCF.
+fn compiler<'a>(robot: &Robot, imports: &'a [(&Cell, Result<Import, NoAnswer>)]) -> Option<&'a [ImportNote]> {
+    robot.file.as_ref().filter(|file| file.format == FileFormat::Mjcf)?;
+    let (_, import) = imports.iter().find(|(cell, _)| cell.engine == reference(FileFormat::Mjcf))?;
+    import.as_ref().ok().map(|import| import.notes.as_slice())
+}
+
+struct OfEngine<'a> {
+    context: &'a Context<'a>,
+    robot: &'a Robot,
+    /// The cell of its import.
+    cell: &'a Cell,
+    /// Its answers about the imported robot.
+    of_engine: Vec<&'a Finished>,
+    compiler: Option<&'a [ImportNote]>,
+}
+
+impl OfEngine<'_> {
+    fn reference(&self) -> &'static str {
+        self.robot.file.as_ref().map_or("featherbench", |file| reference(file.format))
+    }
+
+    fn row(&self, cell: &Cell, metric: &str) -> Row {
+        Row { states: "all".into(), metric: metric.into(), unit: "1".into(), reference: self.reference().into(), ..row(cell, self.robot) }
+    }
+
+    /// The cell's parameters, with more that a reader of the row needs.
+    fn params(&self, more: Value) -> String {
+        let mut params = self.cell.params.clone();
+        if let (Value::Object(params), Value::Object(more)) = (&mut params, more) {
+            params.extend(more);
+        }
+        canonical_json(&params)
+    }
+
+    fn refused(&self, cell: &Cell, no_answer: &NoAnswer) -> Row {
+        let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
+        self.context.gates.explain(self.row(cell, "differences").without_value(verdict, no_answer.to_string()))
+    }
+
+    fn read(&self, reading: &Import) -> Vec<Row> {
+        let links = self.robot.file.as_ref().map_or(&[][..], |file| &file.links);
+        let mut comparison = Comparison::of(&self.robot.description, &reading.description, links, &reading.notes);
+        comparison.findings.extend(self.compiler.into_iter().flat_map(|notes| armature::on_free_joints(notes, &reading.notes)));
+        let own = alterable(&comparison, self.robot);
+        let states = &self.robot.states;
+        let afforded = (WORK / (states.count() * states.nv * states.nv).max(1)).max(LEAST_ALONE);
+        let alone = |(k, finding): (usize, &Finding)| {
+            let alone = finding.alone.as_ref().filter(|_| k < afforded);
+            alone.zip(own.as_ref()).and_then(|(alone, own)| own.effect_of(alone))
+        };
+        let effects: Vec<Option<Effect>> = comparison.findings.iter().enumerate().map(alone).collect();
+        let mut rows = vec![self.count(&comparison, &effects, reading)];
+        rows.extend(comparison.findings.iter().zip(&effects).map(|(finding, effect)| self.difference(finding, effect.as_ref())));
+        let answers: Vec<(&Cell, Result<&[f64], &NoAnswer>)> =
+            self.of_engine.iter().map(|(cell, outcome)| (cell, values(outcome))).collect();
+        for (cell, answer) in &answers {
+            if let Err(no_answer) = answer {
+                rows.push(self.refused(cell, no_answer));
+            }
+        }
+        let find = |quantity: Quantity| {
+            let cell = answers.iter().find(|(cell, _)| cell.quantity == quantity.name());
+            cell.and_then(|(cell, answer)| Some((*cell, answer.ok()?.to_vec())))
+        };
+        if let (Some((id_cell, id)), Some((mass_cell, mass_matrix))) = (find(Quantity::InverseDynamics), find(Quantity::MassMatrix)) {
+            rows.extend(self.computed(reading, [id_cell, mass_cell], &Answers { id, mass_matrix }));
+        }
+        rows
+    }
+
+    fn class(&self, finding: &Finding, effect: Option<&Effect>) -> Class {
+        let largest = effect.map(|effect| worst(effect.id, effect.mass_matrix));
+        Class::of(finding.difference.field, largest, bound(self.robot.depth))
+    }
+
+    /// The number of differences that affect a simulation, and the number of each class.
+    fn count(&self, comparison: &Comparison, effects: &[Option<Effect>], reading: &Import) -> Row {
+        let of = |weight: Weight| comparison.differences().filter(|difference| difference.field.weight() == weight).count();
+        let notes: Vec<Value> = reading
+            .notes
+            .iter()
+            .map(|note| json!({"cause": note.cause, "about": note.about, "text": note.text, "numbers": note.numbers}))
+            .collect();
+        let classes: Vec<Class> =
+            comparison.findings.iter().zip(effects).map(|(finding, effect)| self.class(finding, effect.as_ref())).collect();
+        let class = |class: Class| classes.iter().filter(|found| **found == class).count();
+        let (felt, told) = (of(Weight::Dynamics) + of(Weight::Carried), of(Weight::Information));
+        let more = json!({
+            "dynamics": of(Weight::Dynamics), "carried": of(Weight::Carried), "information": told, "notes": notes,
+            "physics": class(Class::Physics), "rounding": class(Class::Rounding), "not_read": class(Class::NotRead),
+        });
+        Row { params: self.params(more), ..self.row(self.cell, "differences") }.informed(felt as f64)
+    }
+
+    fn difference(&self, finding: &Finding, alone: Option<&Effect>) -> Row {
+        let difference = &finding.difference;
+        let number = |of: fn(&Effect) -> f64| alone.map(of).filter(|error| error.is_finite());
+        let more = json!({
+            "cause": difference.cause.name(),
+            "class": self.class(finding, alone).name(),
+            "ours": difference.ours,
+            "theirs": difference.theirs,
+            "weight": difference.field.weight().name(),
+            "account": difference.account,
+            "note": difference.note,
+            "id": number(|effect| effect.id),
+            "mass_matrix": number(|effect| effect.mass_matrix),
+        });
+        let row = Row {
+            body: difference.body.clone(),
+            states: String::new(),
+            quantity: difference.field.name().into(),
+            params: self.params(more),
+            ..self.row(self.cell, "difference")
+        };
+        row.informed(difference.size)
+    }
+
+    /// The engine's answers against the reference and against the replay, and the part that the replay does not explain.
+    fn computed(&self, reading: &Import, [id, mass]: [&Cell; 2], engine: &Answers) -> Vec<Row> {
+        let error = |reason: &str| vec![self.row(self.cell, "unexplained").without_value(Verdict::Error, reason)];
+        let robot = match as_read(self.robot, reading) {
+            Ok(robot) => robot,
+            Err(no_answer) => return error(&no_answer.to_string()),
+        };
+        // Joints that only they have are at rest on their side; so they must be on ours.
+        let states = carried(&robot.description, &robot.states, &self.robot.description, &self.robot.model);
+        let Some(reference) = Reference::new(&self.robot.description, states) else {
+            return error("our kernels have no answer on the reference reading");
+        };
+        let Some(replayed) = replay(&robot, engine) else {
+            return error("the engine's answers have another shape than the robot it read");
+        };
+        let read = reference.effect(&robot.description, robot.states.nv, engine);
+        let mut rows = Vec::new();
+        for (metric, effect) in [("as_read", read), ("replayed", replayed.effect)] {
+            rows.push(self.row(id, metric).informed(effect.id));
+            rows.push(self.row(mass, metric).informed(effect.mass_matrix));
+        }
+        rows.push(self.unexplained(&robot, &replayed));
+        rows
+    }
+
+    fn unexplained(&self, robot: &Robot, replayed: &Replay) -> Row {
+        let trees = unexplained(&robot.description, replayed);
+        let tree = |tree: &SubTree| {
+            let bodies: Vec<&str> = tree.robot.bodies.iter().map(|body| body.name.as_str()).collect();
+            let error = if tree.error.is_finite() { json!(tree.error) } else { json!(tree.error.to_string()) };
+            json!({"quantity": tree.quantity, "error": error, "bodies": bodies})
+        };
+        let trees: Vec<Value> = trees.iter().map(tree).collect();
+        let count = trees.len() as f64;
+        let row =
+            Row { params: self.params(json!({"unexplained": trees, "gate": bound(robot.depth)})), ..self.row(self.cell, "unexplained") };
+        self.context.gates.judge(row, count, 1.0)
+    }
+}
+
+fn values(outcome: &Outcome) -> Result<&[f64], &NoAnswer> {
+    match outcome {
+        Outcome::Values(values) => Ok(values),
+        Outcome::NoAnswer(no_answer) => Err(no_answer),
+        Outcome::Text(_) => Ok(&[]),
+    }
+}
+
+/// Our robot without the bodies that theirs lacks, with its answers.
+fn alterable(comparison: &Comparison, robot: &Robot) -> Option<Reference> {
+    if robot.states.nv > LARGEST {
+        return None;
+    }
+    let model = featherbench_model::Model::build(&comparison.ours).ok()?;
+    let states = carried(&robot.description, &robot.states, &comparison.ours, &model);
+    Reference::new(&comparison.ours, states)
+}

@@ -1,0 +1,119 @@
+//! Reproductions: do the engines' known deviations still exist, and in their known size?
+//!
+//! `ci/deviations/ENGINE.toml` names each reproduction with the engine's version and the range of its value over twenty seeds. There are
+//! two rows each: the smallest value over the seeds must not be below the range, and the largest must not be above it, each by more than [`SLACK`].
+//! So a deviation that its engine has corrected fails the gate, and so does one that has grown. Then the list must be corrected.
+
+pub(crate) mod section;
+pub(crate) mod words;
+
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, Outcome, Reproduction, Robot, SEEDS, SLACK, Study};
+use featherbench_results::{Relation, Row, Verdict};
+use featherbench_study::{Entry, Made, Setup};
+use serde_json::json;
+use std::sync::Arc;
+
+/// Evaluates the reproduction of a name at the seeds from zero up to a number.
+pub type Reproduce = Arc<dyn Fn(&str, u64) -> Result<Vec<f64>, NoAnswer> + Send + Sync>;
+
+/// The study of known deviations.
+pub struct Reproductions {
+    /// Evaluates a reproduction.
+    pub reproduce: Reproduce,
+}
+
+/// The study in the registry.
+pub const ENTRY: Entry = Entry { name: "reproductions", make: of_suite, sections: section::sections, words: words::WORDS };
+
+/// The study, if the suite asks for it.
+fn of_suite(setup: &Setup) -> Made {
+    let settings = setup.suite.settings::<NoSettings>("reproductions")?;
+    Ok(settings.map(|_| Box::new(Reproductions { reproduce: Arc::clone(&setup.reproduce) }) as _))
+}
+
+impl Study for Reproductions {
+    fn name(&self) -> &'static str {
+        "reproductions"
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        let cell = |known: &Reproduction| Cell {
+            study: self.name().into(),
+            robot: known.name.clone(),
+            robot_hash: featherbench_bench::hash::of(known.name.as_bytes()),
+            params: json!({
+                "condition": known.condition,
+                "measure": known.measure,
+                "range": known.range,
+                "seeds": SEEDS,
+                "upstream": known.upstream,
+            }),
+            engine: known.engine.clone(),
+            version: known.version.clone(),
+            method: known.name.clone(),
+            quantity: "deviation".into(),
+            scalar: "f64".into(),
+        };
+        context.gates.reproductions().iter().map(cell).collect()
+    }
+
+    fn evaluate(&self, _: &Context, cell: &Cell) -> Outcome {
+        (self.reproduce)(&cell.robot, SEEDS).into()
+    }
+
+    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
+        Vec::new()
+    }
+
+    fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
+        let known = context.gates.reproductions();
+        let of = |(cell, outcome): &Finished| {
+            let reproduction = known.iter().find(|known| known.name == cell.robot)?;
+            Some(rows(context, reproduction, cell, outcome))
+        };
+        finished.iter().filter_map(of).flatten().collect()
+    }
+}
+
+fn rows(context: &Context, known: &Reproduction, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
+    let blank = Row {
+        cell: cell.id(),
+        study: cell.study.clone(),
+        family: cell.robot.clone(),
+        params: featherbench_results::canonical_json(&cell.params),
+        engine: cell.engine.clone(),
+        engine_version: cell.version.clone(),
+        method: cell.method.clone(),
+        precision: cell.scalar.clone(),
+        quantity: cell.quantity.clone(),
+        states: "seeds".into(),
+        unit: "1".into(),
+        ..Row::default()
+    };
+    let installed = context.engine(&known.engine).map(|engine| engine.identity().version.clone());
+    if installed.as_ref().is_some_and(|installed| *installed != known.version) {
+        let reason = format!("the range is that of {} {}, here is {}", known.engine, known.version, installed.unwrap_or_default());
+        return vec![blank.without_value(Verdict::Error, reason)];
+    }
+    let values = match outcome.answer() {
+        Ok(values) => values,
+        Err(no_answer) => return vec![blank.without_value(Verdict::Error, no_answer.to_string())],
+    };
+    // A NaN must not be lost here: it is neither small nor large.
+    let fold = |pick: fn(f64, f64) -> f64| {
+        values.iter().copied().reduce(|a, b| {
+            if a.is_nan() {
+                a
+            } else if b.is_nan() {
+                b
+            } else {
+                pick(a, b)
+            }
+        })
+    };
+    let [low, high] = known.range;
+    let judged = |metric: &str, value: Option<f64>, relation, bound| {
+        Row { metric: metric.into(), ..blank.clone() }.gated(value.unwrap_or(f64::NAN), relation, bound)
+    };
+    vec![judged("smallest", fold(f64::min), Relation::Ge, low / SLACK), judged("largest", fold(f64::max), Relation::Le, high * SLACK)]
+}

@@ -1,0 +1,18 @@
+//! The tests of these studies as one program: so shared modules are compiled once.
+
+mod accounted_readings;
+mod bad_oracle;
+mod conditioning;
+mod convicted;
+mod derivatives;
+mod import;
+mod over_best;
+mod planted;
+mod planted_answers;
+mod planted_readings;
+mod repeatability;
+mod reproductions;
+#[path = "../../../mechanics/robots/tests/share.rs"]
+mod share;
+mod steps;
+mod truth;

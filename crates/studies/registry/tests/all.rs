@@ -1,0 +1,4 @@
+//! The tests of these studies as one program: so shared modules are compiled once.
+
+mod registry;
+mod sections;

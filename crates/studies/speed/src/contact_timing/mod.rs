@@ -1,0 +1,177 @@
+//! Contact timing: how long do solvers take for the contacts of standing robots, at the same residual?
+//!
+//! The problems are those of `contact/standing.rs`: a robot lands and stands, and all its contacts are closed. All candidates are timed in
+//! the paired experiment of the study `timing`, from impulses of zero, problem after problem. Each has the loosest tolerance, by powers of
+//! ten, with which all its answers have a natural-map residual within [`TARGET`]. The residual is ours, whatever the solver's own measure is.
+//!
+//! An engine whose solver takes no G gets the robot, its points and the states. It answers by its own model of contact, so no tolerance makes
+//! its residual small. Its tolerance is the loosest with which the velocities are within [`TARGET`] of the limit of its own model. Its rows say
+//! so, and its ratios have a name of their own.
+//!
+//! | candidate | what its time includes |
+//! |---|---|
+//! | `block_gauss_seidel` | the sweeps; rows, blocks and their inverses were made before |
+//! | `block_gauss_seidel_whole` | those too, from M and J |
+//! | `newton` | everything from G and b, and the residuals of the answer |
+//! | an engine's method | its call, by its own clock; G, b and memory were there before |
+//! | … with its own model | its stage of contact forces: what it says itself |
+
+mod candidates;
+mod rows;
+pub(crate) mod section;
+
+use crate::timing::machine::Pinned;
+use crate::timing::protocol::{Budget, Ready, experiment};
+use crate::timing::samples::Samples;
+use candidates::{Candidate, Landed, OWN, Told};
+use featherbench_answers::contact::standing::Stand;
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Robot, Study, hash};
+use featherbench_results::{Row, canonical_json};
+use featherbench_robots::Random;
+use featherbench_study::{Entry, Made, Setup};
+use serde::Deserialize;
+use serde_json::json;
+use std::time::Instant;
+
+/// The study of solution times.
+pub struct ContactTiming {
+    settings: Settings,
+}
+
+/// The table `[contact_timing]` of a suite.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Settings {
+    /// Seconds for each candidate in each experiment.
+    seconds: f64,
+    /// The engines that are timed beside ours if they are installed.
+    #[serde(default)]
+    engines: Vec<String>,
+}
+
+/// The study in the registry.
+pub const ENTRY: Entry = Entry { name: "contact_timing", make: of_suite, sections: section::sections, words: words::WORDS };
+
+/// The study, if the suite asks for it.
+fn of_suite(setup: &Setup) -> Made {
+    Ok(setup.suite.settings::<Settings>("contact_timing")?.map(|settings| Box::new(ContactTiming { settings }) as _))
+}
+
+/// The study's name in rows.
+const STUDY: &str = "contact_timing";
+/// The quantity of its rows.
+const QUANTITY: &str = "contact_impulses";
+/// The largest natural-map residual of an answer that counts.
+const TARGET: f64 = 1e-8;
+/// The most contacts for Newton's method: it factorizes dense matrices, and needs a tenth of a second where there are four times as many.
+const MOST_OF_NEWTON: usize = 16;
+/// The cap on iterations of every solver.
+const CAP: usize = 20_000;
+
+impl ContactTiming {
+    /// Our methods, the first twice, and those of the engines.
+    fn candidates(&self, context: &Context, stand: Stand) -> Vec<Candidate> {
+        let own = OWN
+            .iter()
+            .filter(|method| **method != "newton" || stand.contacts() <= MOST_OF_NEWTON)
+            .map(|method| Candidate::new("featherbench", method, false));
+        let control = Candidate::new("featherbench", OWN[0], true);
+        let engines = self.settings.engines.iter().filter_map(|name| Some((name, context.engine(name)?.contact_solver()?)));
+        let others = engines.flat_map(|(name, solver)| Candidate::all_of(name, solver));
+        own.chain([control]).chain(others).collect()
+    }
+
+    fn cell(&self, context: &Context, stand: Stand) -> Option<Cell> {
+        let identity = context.engine("featherbench")?.identity();
+        let candidates: Vec<_> = self.candidates(context, stand).iter().map(|candidate| candidate.to_params(context)).collect();
+        let params = json!({"contacts": stand.contacts(), "rank": stand.rank(), "seconds": self.settings.seconds, "seed": context.seed, "target": TARGET, "candidates": candidates});
+        Some(Cell {
+            study: STUDY.into(),
+            robot: stand.name(),
+            robot_hash: hash::of(canonical_json(&params).as_bytes()),
+            params,
+            engine: identity.name.clone(),
+            version: identity.version.clone(),
+            method: OWN[0].into(),
+            quantity: QUANTITY.into(),
+            scalar: "f64".into(),
+        })
+    }
+
+    /// How many problems, what is told of each candidate, then the samples.
+    fn measured(&self, context: &Context, cell: &Cell) -> Result<Vec<f64>, NoAnswer> {
+        let lost = || NoAnswer::Failed("there is no robot of this cell".into());
+        let stand = Stand::ALL.into_iter().find(|stand| stand.name() == cell.robot).ok_or_else(lost)?;
+        let landed = Landed::of(stand, context.seed)?;
+        let candidates = Candidate::of(cell);
+        let chosen: Vec<_> = candidates.iter().map(|candidate| candidate.at_target(context, &landed)).collect();
+        let _pinned = Pinned::to_one_core();
+        let prepare = |which: usize| -> Ready { candidates[which].prepare(context, &landed, chosen[which].clone()?.tolerance) };
+        let mut random = Random::named(context.seed, &cell.id());
+        let start = Instant::now();
+        let clock = || start.elapsed();
+        let samples = experiment(&prepare, candidates.len(), landed.problems.len(), Budget::of(self.settings.seconds), &clock, &mut random);
+        let told = chosen.into_iter().flat_map(|chosen| chosen.unwrap_or(Told::NONE).to_values());
+        Ok(std::iter::once(landed.problems.len() as f64).chain(told).chain(samples.to_values()).collect())
+    }
+}
+
+/// The outcome of a cell.
+struct Measured {
+    problems: f64,
+    told: Vec<Told>,
+    samples: Samples,
+}
+
+impl Measured {
+    fn from_values(values: &[f64], candidates: usize) -> Option<Self> {
+        let (&problems, rest) = values.split_first()?;
+        let (told, samples) = rest.split_at_checked(3 * candidates)?;
+        let told = told.chunks_exact(3).map(Told::from_values).collect();
+        let samples = Samples::from_values(samples).filter(|samples| samples.calls.len() == candidates)?;
+        Some(Self { problems, told, samples })
+    }
+}
+
+impl Study for ContactTiming {
+    fn name(&self) -> &'static str {
+        STUDY
+    }
+
+    fn exclusive(&self) -> bool {
+        true
+    }
+
+    fn measures_time(&self) -> bool {
+        true
+    }
+
+    fn engines(&self) -> &[String] {
+        &self.settings.engines
+    }
+
+    /// Contact problems are timed by the clocks of their solvers.
+    fn needs_clocks(&self) -> bool {
+        false
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        Stand::ALL.into_iter().filter_map(|stand| self.cell(context, stand)).collect()
+    }
+
+    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+        self.measured(context, cell).into()
+    }
+
+    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
+        Vec::new()
+    }
+
+    fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
+        finished.iter().flat_map(|(cell, outcome)| rows::rows(context.gates, cell, outcome)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;
+pub(crate) mod words;

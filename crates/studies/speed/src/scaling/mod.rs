@@ -1,0 +1,235 @@
+//! Scaling: what becomes of sparsity, operations and errors as robots grow. Every row is exact: times are of the study `growth`.
+//!
+//! | what | question | judged by |
+//! |---|---|---|
+//! | counts | are stored numbers and operations the integers of the theory, also at 10⁶ dofs? | equality, with the depths of the description |
+//! | fill-in | what does each order of elimination add to the pattern of M? | equality: zero leaves first, everything root first |
+//! | factors | how far are LᵀDL from M, and a solution from its right side, per dof? | a gate, in double-double arithmetic |
+//! | others | what fills the factors of other engines, and how far are these and their solutions from M? | a gate, as ours, for those that are given our M |
+//! | dynamics | how far is forward dynamics from the truth? | a gate, and one over the conditioning bound |
+//! | work | where do the articulated-body algorithm and the mass matrix take equally many operations? | nothing: `growth` measures it |
+//! | parallel | how much more work has one robot on several cores, and how much of it must wait? | a gate on the work: twice the serial one |
+//!
+//! A tree is a robot of the suite or a generator's text. A generated tree is made when a cell needs it, and not kept: the robots of a suite
+//! are all in memory at once.
+
+mod dynamics;
+mod factor;
+mod fill;
+mod floor;
+pub(crate) mod others;
+mod parallel;
+mod rows;
+pub(crate) mod section;
+mod tree;
+pub(crate) mod words;
+mod work;
+
+pub(crate) use dynamics::{relative_error, truth};
+pub(crate) use work::crossing;
+
+use crate::operations;
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, OWN, Outcome, Quantity, Robot, Study};
+use featherbench_results::Row;
+use featherbench_study::{Entry, Made, Setup};
+use fill::Order;
+use serde::Deserialize;
+use serde_json::json;
+
+/// The scaling study.
+pub struct Scaling {
+    /// The table of the suite.
+    pub settings: Settings,
+}
+
+/// The table `[scaling]` of a suite. A tree is a generator's text, as of `featherbench gen`. The suite's robots that take the study are
+/// among `counts` and `factors`.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Settings {
+    /// Trees whose stored numbers and operations are counted.
+    pub counts: Vec<String>,
+    /// Trees whose fill-in is counted, and whose factors are compared with M.
+    pub factors: Vec<String>,
+    /// Engines beside ours, if they are installed, whose factors of the suite's robots are compared with M too.
+    pub engines: Vec<String>,
+    /// Trees whose forward dynamics is compared with the truth.
+    pub dynamics: Vec<String>,
+    /// Of these, those whose M is factorized too.
+    pub by_factorization: Vec<String>,
+    /// Trees whose work and span are counted for the methods that divide a tree into sub-trees.
+    pub sub_trees: Vec<String>,
+    /// Chains whose work and span are counted for the method that divides a chain.
+    pub both_ends: Vec<String>,
+    /// Families along which the work of forward dynamics is counted.
+    pub lines: Vec<Line>,
+}
+
+/// A family along which robots grow.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Line {
+    /// Its name in rows.
+    pub name: String,
+    /// The generator's text, with `*` in the place of the size.
+    pub of: String,
+    /// The sizes, ascending.
+    pub sizes: Vec<usize>,
+}
+
+impl Line {
+    /// The generators' texts.
+    pub fn trees(&self) -> impl Iterator<Item = String> + '_ {
+        self.sizes.iter().map(|size| self.of.replace('*', &size.to_string()))
+    }
+}
+
+/// The study in the registry.
+pub const ENTRY: Entry = Entry { name: "scaling", make: of_suite, sections: section::sections, words: words::WORDS };
+
+/// The study, if the suite asks for it.
+fn of_suite(setup: &Setup) -> Made {
+    Ok(setup.suite.settings::<Settings>("scaling")?.map(|settings| Box::new(Scaling { settings }) as _))
+}
+
+/// Up to this many multiply-subtracts the kernels run on a scalar that counts: some seconds. Above it the kernels' pattern is counted.
+const MOST_COUNTED: f64 = 2e8;
+/// Larger integers are not all numbers of f64.
+const LARGEST_INTEGER: f64 = 9_007_199_254_740_992.0;
+/// Methods of ours that take O(n).
+const METHODS: [&str; 2] = ["aba", "refined_1"];
+
+impl Study for Scaling {
+    fn name(&self) -> &'static str {
+        "scaling"
+    }
+
+    fn engines(&self) -> &[String] {
+        &self.settings.engines
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        let Some(featherbench) = context.engine(OWN) else { return Vec::new() };
+        let Settings { counts, factors, engines, dynamics, by_factorization, sub_trees, both_ends, lines } = &self.settings;
+        let cell = |tree: &str, quantity: Quantity, method: &str, what: serde_json::Value| {
+            tree::cell(self.name(), context.seed, tree, featherbench.identity(), quantity.name(), method, what)
+        };
+        let robots: Vec<&String> = context.robots.iter().filter(|robot| robot.takes(self.name())).map(|robot| &robot.name).collect();
+        let mut cells = Vec::new();
+        for tree in counts.iter().chain(robots.iter().copied()) {
+            cells.push(cell(tree, Quantity::StoredEntries, "ltdl", json!({"what": "counts"})));
+        }
+        for tree in factors.iter().chain(robots.iter().copied()) {
+            for order in Order::ALL {
+                cells.push(cell(tree, Quantity::Factorization, order.name(), json!({"what": "fill_in"})));
+            }
+            cells.push(cell(tree, Quantity::Factorization, "ltdl", json!({"what": "factors"})));
+        }
+        let others = others::engines(context, engines);
+        for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
+            cells.extend(others::cells(&others, self.name(), robot));
+        }
+        for tree in dynamics {
+            cells.push(cell(tree, Quantity::ForwardDynamics, "floor", json!({"what": "floor"})));
+            let factorizing = by_factorization.contains(tree).then_some("ltdl");
+            for method in METHODS.into_iter().chain(factorizing) {
+                cells.push(cell(tree, Quantity::ForwardDynamics, method, json!({"what": "dynamics"})));
+            }
+        }
+        for tree in sub_trees {
+            for (quantity, method, _) in parallel::BY_SUB_TREES {
+                cells.push(cell(tree, quantity, method, json!({"what": "parallel"})));
+            }
+        }
+        for tree in both_ends {
+            cells.push(cell(tree, Quantity::ForwardDynamics, parallel::FROM_BOTH_ENDS, json!({"what": "parallel"})));
+        }
+        for line in lines {
+            for tree in line.trees() {
+                cells.push(cell(&tree, Quantity::ForwardDynamics, "ltdl", json!({"what": "work", "line": line.name})));
+            }
+        }
+        cells
+    }
+
+    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+        let answer = || -> Result<Vec<f64>, NoAnswer> {
+            let robot = tree::robot(context, &cell.robot)?;
+            let mut values = tree::sizes(&robot).to_vec();
+            values.extend(self.values(context, cell, &robot)?);
+            Ok(values)
+        };
+        answer().into()
+    }
+
+    /// All rows come from [`Study::compare_all`]: most trees are no robots of the suite.
+    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
+        Vec::new()
+    }
+
+    fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
+        rows::rows(context, &self.settings.lines, finished)
+    }
+}
+
+impl Scaling {
+    /// The values of a cell behind the sizes of its tree.
+    fn values(&self, context: &Context, cell: &Cell, robot: &Robot) -> Result<Vec<f64>, NoAnswer> {
+        let lost = || NoAnswer::Failed("there is no engine or question of this cell".into());
+        match cell.params["what"].as_str().unwrap_or_default() {
+            "counts" => counts(robot),
+            "fill_in" => {
+                let order = Order::ALL.into_iter().find(|order| order.name() == cell.method).ok_or_else(lost)?;
+                Ok(fill_in(robot, order))
+            }
+            "factors" => Ok(factor::errors(robot).map_err(NoAnswer::Failed)?.to_vec()),
+            others::WHAT => Ok(vec![others::value(context, cell, robot)?]),
+            "floor" => floor::estimate(robot, 0, context.seed).map(|floor| vec![floor]).ok_or_else(lost),
+            "dynamics" => Ok(vec![dynamics::error(context.engine(OWN).ok_or_else(lost)?, robot, &cell.method)?]),
+            "parallel" => Ok(parallel::counts(robot, &cell.method)?.to_vec()),
+            "work" => Ok(work::of_forward_dynamics(robot).map_err(NoAnswer::Failed)?.to_vec()),
+            _ => Err(lost()),
+        }
+    }
+}
+
+/// One if the kernels ran on a scalar that counts and zero if their pattern was counted; the integers of the theory; those that were found.
+fn counts(robot: &Robot) -> Result<Vec<f64>, NoAnswer> {
+    let due = operations::expected(&robot.description);
+    if due.iter().any(|count| *count >= LARGEST_INTEGER) {
+        return Err(NoAnswer::Failed("its counts are too large for f64: take a smaller tree".into()));
+    }
+    let [_, _, multiply_subtracts, ..] = due;
+    let counted = multiply_subtracts <= MOST_COUNTED;
+    let found = if counted { operations::counts(robot).map_err(NoAnswer::Failed)? } else { of_pattern(robot).to_vec() };
+    Ok([f64::from(u8::from(counted))].into_iter().chain(due).chain(found).collect())
+}
+
+/// The same counts from the pattern that the kernels use: the length of each row of M.
+fn of_pattern(robot: &Robot) -> [f64; 5] {
+    let topology = &robot.model.topology;
+    let (mut d1, mut d2) = (0_u64, 0_u64);
+    for dof in 0..topology.nv() {
+        let depth = topology.dof_depth(dof) as u64;
+        d1 += depth - 1;
+        d2 += depth * (depth - 1) / 2;
+    }
+    let n = topology.nv() as u64;
+    [topology.stored() as u64, d1, d2, 2 * d1, n].map(|count| count as f64)
+}
+
+/// Stored numbers of M; stored numbers of the factor by the theory; those that symbolic elimination finds, and its multiply-subtracts.
+fn fill_in(robot: &Robot, order: Order) -> Vec<f64> {
+    let parents = tree::dof_parents(&robot.description);
+    let [stored, ..] = operations::expected(&robot.description);
+    let due = match order {
+        Order::LeavesFirst | Order::MinimumDegree => stored,
+        // A tree's dofs follow each other, and its factor is full.
+        Order::RootFirst => {
+            let roots: Vec<usize> = (0..parents.len()).filter(|&dof| parents[dof].is_none()).chain([parents.len()]).collect();
+            roots.windows(2).map(|pair| (pair[1] - pair[0]) as f64).map(|size| size * (size + 1.0) / 2.0).sum()
+        }
+    };
+    let found = fill::factor(&parents, &order.of(&parents));
+    vec![stored, due, found.stored as f64, found.multiply_subtracts as f64]
+}

@@ -1,0 +1,55 @@
+//! Our methods beside the best of some engines: the time of the fastest of their methods over that of our own.
+
+use super::rows::{Check, Experiment, estimated, judged, params};
+use super::samples::Candidate;
+use super::{BEST_OTHER, REFERENCE};
+use featherbench_bench::statistics::quantile;
+use featherbench_bench::statistics::{Estimate, LEVEL};
+use featherbench_results::{Row, canonical_json};
+
+impl Experiment<'_> {
+    /// The rows `best_other`, one for each of our methods: the time of the fastest method of these engines over its own, in the same rounds.
+    ///
+    /// A method whose answers are wrong or missing does not count. Where none is left, there is no row.
+    pub(super) fn beside(&self, best_of: &[String], checks: &[Check], noise: Option<&str>) -> Vec<Row> {
+        let Ok(samples) = &self.samples else { return Vec::new() };
+        let complaint = |candidate: &Candidate| Check::complaint(Check::find(checks, candidate));
+        let answers = |which: &usize| !samples.of(*which).iter().any(|ns| ns.is_nan());
+        let all = || (0..self.candidates.len()).filter(answers);
+        let others: Vec<usize> = all()
+            .filter(|&which| best_of.contains(&self.candidates[which].engine) && complaint(&self.candidates[which]).is_none())
+            .collect();
+        let named = |which: usize| format!("{} {}", self.candidates[which].engine, self.candidates[which].method);
+        let own_noise = self.noise();
+        let mut rows = Vec::new();
+        for which in all().filter(|&which| self.candidates[which].engine == REFERENCE && !self.candidates[which].control) {
+            let own = &self.candidates[which];
+            // The bootstrap, which takes milliseconds, is made of the fastest one alone.
+            let median = |other: usize| {
+                let mut ratios: Vec<f64> = samples.of(other).iter().zip(samples.of(which)).map(|(other, own)| other / own).collect();
+                ratios.sort_unstable_by(f64::total_cmp);
+                quantile(&ratios, 0.5)
+            };
+            let medians = others.iter().map(|&other| (other, median(other)));
+            let Some((other, _)) = medians.min_by(|(_, a), (_, b)| a.total_cmp(b)) else { continue };
+            let name = format!("{} {} beside {}", own.method, own.quantity, named(other));
+            let ratio = Estimate::ratio(samples.of(other), samples.of(which), LEVEL, &mut self.random(&name));
+            let mut params = params(self.cell);
+            params["others"] = others.iter().map(|&other| named(other)).collect();
+            let blank = Row {
+                engine: own.engine.clone(),
+                engine_version: own.version.clone(),
+                method: own.method.clone(),
+                precision: own.precision().into(),
+                metric: BEST_OTHER.into(),
+                unit: "1".into(),
+                reference: named(other),
+                params: canonical_json(&params),
+                estimated: self.candidates[other].estimate,
+                ..self.blank.clone()
+            };
+            rows.push(judged(estimated(blank, &ratio), complaint(own).or(noise).or(own_noise.as_deref())));
+        }
+        rows
+    }
+}

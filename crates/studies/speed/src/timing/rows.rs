@@ -1,0 +1,271 @@
+//! Rows of the outcomes of a robot's cells.
+
+use super::machine::Machine;
+use super::samples::{Candidate, Samples, outcome_samples};
+use super::{CHECK, EXPERIMENT, MACHINE, OVERHEAD, REFERENCE, check};
+use featherbench_bench::measure::worst;
+use featherbench_bench::statistics::quantile;
+use featherbench_bench::statistics::{CONTROL_LEVEL, Estimate, Finding, LEVEL};
+use featherbench_bench::{Cell, Finished, Gates, NoAnswer, Outcome, Robot};
+use featherbench_results::{Kind, Relation, Row, Verdict, canonical_json};
+use featherbench_robots::Random;
+use featherbench_spatial::peak::LANES;
+use featherbench_study::row;
+use serde_json::{Value, json};
+
+/// An experiment whose A/A ratio is bad is not valid. If more than one in this number of a robot's A/A ratios is bad, none of its times is.
+const BAD_CONTROLS: usize = 4;
+
+/// All rows of a robot.
+pub(super) fn rows(gates: &Gates, robot: &Robot, best_of: &[String], finished: &[Finished]) -> Vec<Row> {
+    let of_kind = |what: &'static str| finished.iter().filter(move |(cell, _)| cell.params["what"] == what);
+    let checks: Vec<Check> = of_kind(CHECK).map(|finished| Check::of(gates, robot, finished)).collect();
+    let experiments: Vec<Experiment> = of_kind(EXPERIMENT).map(|finished| Experiment::of(robot, finished)).collect();
+    let noise = noise(&experiments);
+    let machine = of_kind(MACHINE).flat_map(|(cell, outcome)| machine(cell, robot, outcome));
+    let checked = checks.iter().filter_map(|check| check.row.clone());
+    let overheads = of_kind(OVERHEAD).filter_map(|finished| overhead(robot, finished));
+    let timed = experiments.iter().flat_map(|experiment| {
+        let mut rows = experiment.rows(&checks, noise.as_deref());
+        rows.extend(experiment.beside(best_of, &checks, noise.as_deref()));
+        rows
+    });
+    machine.chain(checked).chain(overheads).chain(timed).collect()
+}
+
+/// Why no time of this robot counts: too many of its A/A ratios show that the machine was not quiet, or are missing.
+fn noise(experiments: &[Experiment]) -> Option<String> {
+    let timed = || experiments.iter().filter(|experiment| experiment.samples.is_ok());
+    let (controls, bad) = (timed().count(), timed().filter(|experiment| experiment.noise().is_some()).count());
+    (bad * BAD_CONTROLS > controls).then(|| format!("{bad} of {controls} A/A controls of this robot are not 1: the machine was not quiet"))
+}
+
+/// The machine's performance. The rows belong to no robot.
+fn machine(cell: &Cell, robot: &Robot, outcome: &Outcome) -> Vec<Row> {
+    let blank = Row { kind: Kind::Measured, quantity: MACHINE.into(), ..row(cell, robot) };
+    let blank = Row { family: String::new(), robot: String::new(), nq: None, nv: None, bodies: None, depth: None, ..blank };
+    let measured = match outcome.answer() {
+        Ok(values) => Machine::from_values(values).ok_or_else(|| "the outcome is no machine".to_owned()),
+        Err(no_answer) => Err(no_answer.to_string()),
+    };
+    let measured = match measured {
+        Ok(machine) => machine,
+        Err(reason) => return vec![blank.without_value(Verdict::Error, reason)],
+    };
+    let complaint = measured.complaint();
+    let Machine { peak, scalar, resolution, empty } = measured;
+    // A peak that is not valid does not count.
+    let values = [
+        ("fma_per_ns", "1/ns", peak, complaint.as_ref()),
+        ("fma_per_ns_per_lane", "1/ns", peak / LANES as f64, complaint.as_ref()),
+        ("fma_per_ns_scalar", "1/ns", scalar, None),
+        ("clock_ns", "ns", resolution, None),
+        ("empty_call_ns", "ns", empty, None),
+    ];
+    let row = |(metric, unit, value, complaint): (&str, &str, f64, Option<&String>)| {
+        let row = Row { metric: metric.into(), unit: unit.into(), ..blank.clone() }.informed(value);
+        judged(row, complaint.map(String::as_str))
+    };
+    values.map(row).into()
+}
+
+/// The overhead of calling an engine whose times are estimates, by the clock that subtracts it. An engine that does not offer the robot has
+/// its row in the check.
+fn overhead(robot: &Robot, (cell, outcome): &Finished) -> Option<Row> {
+    let blank = Row {
+        kind: Kind::Measured,
+        cache: "stream".into(),
+        metric: "overhead_ns".into(),
+        unit: "ns".into(),
+        estimated: true,
+        ..row(cell, robot)
+    };
+    match outcome.answer() {
+        Ok(overheads) => {
+            let mut sorted = overheads.to_vec();
+            sorted.sort_unstable_by(f64::total_cmp);
+            Some(blank.informed(quantile(&sorted, 0.5)))
+        }
+        Err(NoAnswer::NotOffered(_)) => None,
+        Err(no_answer) => Some(blank.without_value(Verdict::Error, no_answer.to_string())),
+    }
+}
+
+/// A measured row, not valid if there is a complaint. A row without a value has its reason already.
+pub(crate) fn judged(row: Row, complaint: Option<&str>) -> Row {
+    match complaint.filter(|_| row.value.is_some()) {
+        Some(reason) => row.invalid(reason),
+        None => row,
+    }
+}
+
+/// Whether the times of one engine's method count.
+pub(super) struct Check {
+    engine: String,
+    method: String,
+    quantity: String,
+    /// The reason, if they do not.
+    complaint: Option<String>,
+    row: Option<Row>,
+}
+
+impl Check {
+    fn of(gates: &Gates, robot: &Robot, (cell, outcome): &Finished) -> Self {
+        let blank =
+            Row { cache: "stream".into(), metric: "worst_error".into(), unit: "1".into(), reference: REFERENCE.into(), ..row(cell, robot) };
+        let limit = check::limit(robot.depth, &cell.quantity);
+        let row = match outcome.answer() {
+            Err(no_answer) => {
+                let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
+                blank.without_value(verdict, no_answer.to_string())
+            }
+            Ok(errors) => blank.gated(errors.iter().copied().fold(0.0, worst), Relation::Le, limit),
+        };
+        let complaint = match row.verdict {
+            Verdict::Pass => None,
+            Verdict::Fail => Some(format!("a wrong answer has no time: {}", row.reason)),
+            _ => Some(row.reason.clone()),
+        };
+        // Our own good answers belong to the agreement study; here only other engines and failures have rows.
+        let news = cell.engine != REFERENCE || complaint.is_some();
+        let (engine, method, quantity) = (cell.engine.clone(), cell.method.clone(), cell.quantity.clone());
+        Self { engine, method, quantity, complaint, row: news.then(|| gates.explain(row)) }
+    }
+}
+
+impl Check {
+    pub(super) fn find<'c>(checks: &'c [Self], candidate: &Candidate) -> Option<&'c Self> {
+        let of =
+            |check: &&Self| check.engine == candidate.engine && check.method == candidate.method && check.quantity == candidate.quantity;
+        checks.iter().find(of)
+    }
+
+    /// Why a candidate's times do not count, as far as its answers go.
+    pub(super) fn complaint(check: Option<&Self>) -> Option<&str> {
+        match check {
+            None => Some("its answers were not checked in this run"),
+            Some(check) => check.complaint.as_deref(),
+        }
+    }
+}
+
+/// One experiment with its statistics.
+pub(super) struct Experiment<'a> {
+    pub(super) cell: &'a Cell,
+    pub(super) blank: Row,
+    pub(super) candidates: Vec<Candidate>,
+    pub(super) samples: Result<Samples, String>,
+    /// The ratio of the A/A replicate to the reference, or why it is not known.
+    control: Result<Estimate, &'static str>,
+}
+
+impl<'a> Experiment<'a> {
+    fn of(robot: &Robot, (cell, outcome): &'a Finished) -> Self {
+        let candidates = Candidate::of(cell);
+        let samples = match outcome.answer() {
+            Err(no_answer) => Err(no_answer.to_string()),
+            Ok(_) => outcome_samples(cell, outcome).ok_or_else(|| "the outcome holds no samples".to_owned()),
+        };
+        let cache = cell.params["cache"].as_str().unwrap_or_default().to_owned();
+        let blank = Row { kind: Kind::Measured, cache, params: canonical_json(&params(cell)), ..row(cell, robot) };
+        let mut experiment = Self { cell, blank, candidates, samples, control: Err("the experiment has no A/A control") };
+        if let (Some(which), Ok(samples)) = (experiment.candidates.iter().position(|candidate| candidate.control), &experiment.samples) {
+            let ratio = Estimate::ratio(samples.of(which), samples.of(0), CONTROL_LEVEL, &mut experiment.random("control"));
+            let known = ratio.value.is_finite() && ratio.low.is_finite() && ratio.high.is_finite();
+            experiment.control =
+                if known { Ok(ratio) } else { Err("the A/A control or the reference stopped answering while it was timed") };
+        }
+        experiment
+    }
+
+    /// Why no time of this experiment counts, if its A/A ratio shows that or is missing.
+    pub(super) fn noise(&self) -> Option<String> {
+        match &self.control {
+            Ok(control) => control.complaint(),
+            Err(reason) => Some((*reason).to_owned()),
+        }
+    }
+
+    pub(super) fn random(&self, what: &str) -> Random {
+        Random::named(0, &format!("{} {what}", self.cell.id()))
+    }
+
+    fn rows(&self, checks: &[Check], noise: Option<&str>) -> Vec<Row> {
+        let samples = match &self.samples {
+            Ok(samples) => samples,
+            Err(reason) => return vec![self.blank.clone().without_value(Verdict::Error, reason.clone())],
+        };
+        let own_noise = self.noise();
+        let mut rows = Vec::new();
+        for (which, candidate) in self.candidates.iter().enumerate() {
+            let blank = Row {
+                engine: candidate.engine.clone(),
+                engine_version: candidate.version.clone(),
+                method: candidate.method.clone(),
+                precision: candidate.precision().into(),
+                ..self.blank.clone()
+            };
+            let check = Check::find(checks, candidate);
+            let usual = format!("{REFERENCE} {}", self.cell.method);
+            if candidate.control {
+                // A reference that failed from the start has its row in the check, and there is nothing to compare.
+                if self.control.is_err() && check.is_some_and(|check| check.complaint.is_some()) {
+                    continue;
+                }
+                let blank = Row { metric: "control".into(), unit: "1".into(), reference: format!("{usual}, its first copy"), ..blank };
+                rows.push(match &self.control {
+                    Ok(control) => judged(estimated(blank, control), own_noise.as_deref()),
+                    Err(reason) => blank.without_value(Verdict::Error, *reason),
+                });
+                continue;
+            }
+            let complaint = Check::complaint(check);
+            let ns = samples.of(which);
+            if ns.iter().any(|ns| ns.is_nan()) {
+                // A candidate that failed from the start has its row in the check.
+                if complaint.is_none() {
+                    let row = Row { metric: "ns_per_call".into(), unit: "ns".into(), ..blank };
+                    rows.push(row.without_value(Verdict::Error, "it stopped answering while it was timed"));
+                }
+                continue;
+            }
+            let name = format!("{} {} {}", candidate.engine, candidate.method, candidate.quantity);
+            let time = Estimate::median(ns, LEVEL, &mut self.random(&name));
+            let complaint = complaint.or(noise).or(own_noise.as_deref());
+            let blank = Row { estimated: candidate.estimate, ..blank };
+            let timed = Row { metric: "ns_per_call".into(), unit: "ns".into(), params: with_deciles(self.cell, ns), ..blank.clone() };
+            rows.push(judged(estimated(timed, &time), complaint));
+            if which > 0 {
+                let ratio = Estimate::ratio(ns, samples.of(0), LEVEL, &mut self.random(&format!("{name} ratio")));
+                let blank = Row { unit: "1".into(), reference: usual, ..blank };
+                rows.push(judged(estimated(Row { metric: "ratio".into(), ..blank.clone() }, &ratio), complaint));
+                let finding = match ratio.finding() {
+                    Finding::Slower => 1.0,
+                    Finding::Alike => 0.0,
+                    Finding::Faster => -1.0,
+                };
+                rows.push(judged(Row { metric: "finding".into(), ..blank }.informed(finding), complaint));
+            }
+        }
+        rows
+    }
+}
+
+/// A row closed with a value and its interval.
+pub(crate) fn estimated(blank: Row, estimate: &Estimate) -> Row {
+    blank.measured(estimate.value, estimate.low, estimate.high)
+}
+
+/// The parameters of an experiment's rows. The candidates are in rows of their own: a list of them here would be in each.
+pub(super) fn params(cell: &Cell) -> Value {
+    json!({"states": cell.params["states"], "seconds": cell.params["seconds"]})
+}
+
+/// The same of a time, with the first and the last decile of its blocks.
+fn with_deciles(cell: &Cell, ns: &[f64]) -> String {
+    let mut sorted = ns.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let mut params = params(cell);
+    (params["p10"], params["p90"]) = (json!(quantile(&sorted, 0.1)), json!(quantile(&sorted, 0.9)));
+    canonical_json(&params)
+}

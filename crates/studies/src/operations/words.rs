@@ -1,5 +1,0 @@
-//! The words of the study: its names in rows, and what they mean.
-
-use crate::dictionary::Words;
-
-pub(crate) const WORDS: Words = Words { quantities: &[], metrics: &[], params: &[] };

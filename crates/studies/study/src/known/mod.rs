@@ -1,0 +1,60 @@
+//! Known answers: what studies share whose cases belong to no robot of the suite.
+//!
+//! Such a study is a list of [`Case`]s. Each has a closed form, or a second route in other arithmetic. A run evaluates all of them.
+//!
+//! - `case.rs`: a case and its rows;
+//! - `table.rs`: the table of its section: what was asked, and how many numbers are as known.
+
+mod case;
+mod table;
+
+pub use case::{Case, Evaluate, Judged, Number, count, error, failed, told};
+pub use featherbench_spatial::{larger, largest};
+pub use table::{passed, table};
+
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Robot, Study};
+use featherbench_results::Row;
+
+/// A study of cases with known answers.
+pub struct KnownAnswers {
+    /// The study's name in rows.
+    name: &'static str,
+    cases: Vec<Case>,
+}
+
+impl KnownAnswers {
+    /// The study of this name with these cases. No two may have the same name, quantity and method.
+    pub fn new(name: &'static str, cases: Vec<Case>) -> KnownAnswers {
+        KnownAnswers { name, cases }
+    }
+
+    fn case(&self, cell: &Cell) -> Option<&Case> {
+        self.cases.iter().find(|case| case.is_of(cell))
+    }
+}
+
+impl Study for KnownAnswers {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        self.cases.iter().filter_map(|case| case.cell(self.name, context)).collect()
+    }
+
+    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+        match self.case(cell) {
+            Some(case) => (case.evaluate)(context.seed).into(),
+            None => Outcome::NoAnswer(NoAnswer::Failed("there is no case of this cell".into())),
+        }
+    }
+
+    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
+        Vec::new()
+    }
+
+    fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
+        let of = |(cell, outcome): &Finished| Some(self.case(cell)?.rows(context, cell, outcome));
+        finished.iter().filter_map(of).flatten().collect()
+    }
+}

@@ -1,0 +1,101 @@
+//! What every study is made of: its entry in the registry, the rows of its cells, cases with known answers, and figures.
+//!
+//! A study is a folder in one of three crates, by the kind of its question: `comparison` (engines with each other and with the truth), `answers`
+//! (where the answer is known) and `speed`. Each folder has an [`ENTRY`](Entry); the crate `registry` lists all in the order of a run.
+
+pub mod figures;
+pub mod known;
+mod words;
+
+pub use words::Words;
+
+use featherbench_bench::alone::Ask;
+use featherbench_bench::{Cell, Context, Engine, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study, Suite};
+use featherbench_report::{Overview, Section};
+use featherbench_results::{Row, RunInfo};
+use std::sync::Arc;
+
+/// The study that a suite asks for, if it does; an error names file, line and key.
+pub type Made = Result<Option<Box<dyn Study>>, HarnessError>;
+
+/// The quantities and methods of our kernels on a robot.
+pub type Kernels = fn(&Robot) -> Vec<(Quantity, &'static str)>;
+
+/// Evaluates the reproduction of a name at the seeds from zero up to a number.
+pub type Reproduce = Arc<dyn Fn(&str, u64) -> Result<Vec<f64>, NoAnswer> + Send + Sync>;
+
+/// A study of the house.
+pub struct Entry {
+    /// Its name in rows and suites.
+    pub name: &'static str,
+    /// How it is made from a suite.
+    pub make: fn(&Setup) -> Made,
+    /// Its sections of the report of a run.
+    pub sections: fn(&RunInfo, &[Row], &Overview) -> Vec<Section>,
+    /// What its names in rows mean.
+    pub words: Words,
+}
+
+/// The rows of some studies are in the verdict, in the section of another study and in the tables of rows alone.
+pub fn no_section(_: &RunInfo, _: &[Row], _: &Overview) -> Vec<Section> {
+    Vec::new()
+}
+
+/// What studies are made from.
+pub struct Setup<'a> {
+    /// The suite, whose tables are the studies' settings.
+    pub suite: &'a Suite,
+    /// Whether the engines themselves are asked.
+    pub live: bool,
+    /// The hash of this program.
+    pub program: &'a str,
+    /// Our kernels that are timed.
+    pub kernels: Kernels,
+    /// Evaluates reproductions of known deviations.
+    pub reproduce: Reproduce,
+    /// Measures a method in a process of its own.
+    pub measure: Ask,
+}
+
+/// A row with the fields of its cell and robot; the study adds case, metric and value.
+pub fn row(cell: &Cell, robot: &Robot) -> Row {
+    Row {
+        cell: cell.id(),
+        study: cell.study.clone(),
+        family: robot.family.clone(),
+        robot: robot.name.clone(),
+        nq: Some(robot.states.nq as u64),
+        nv: Some(robot.states.nv as u64),
+        bodies: Some(robot.description.bodies.len() as u64),
+        depth: Some(robot.depth as u64),
+        params: featherbench_results::canonical_json(&cell.params),
+        engine: cell.engine.clone(),
+        engine_version: cell.version.clone(),
+        method: cell.method.clone(),
+        precision: cell.scalar.clone(),
+        quantity: cell.quantity.clone(),
+        ..Row::default()
+    }
+}
+
+/// Asks a cell's engine for its quantity at the robot's states.
+pub fn evaluate(context: &Context, cell: &Cell) -> Outcome {
+    let lost = |what: &str| Outcome::NoAnswer(NoAnswer::Failed(format!("there is no {what} of this cell")));
+    let Some(robot) = context.robot(&cell.robot) else { return lost("robot") };
+    let Some(engine) = context.engine(&cell.engine) else { return lost("engine") };
+    let Some(quantity) = Quantity::parse(&cell.quantity) else { return lost("quantity") };
+    asked(engine, robot, quantity, &cell.method).into()
+}
+
+/// Asks an engine for a quantity at a robot's states: one block of numbers for each state.
+///
+/// # Errors
+/// What the engine says instead of an answer; [`NoAnswer::Failed`] if the numbers are not as many as are due.
+pub fn asked(engine: &dyn Engine, robot: &Robot, quantity: Quantity, method: &str) -> Result<Vec<f64>, NoAnswer> {
+    let count = quantity.states(robot.states.count());
+    let mut prepared = engine.prepare(robot, quantity, method, &robot.states)?;
+    prepared.run(0..count)?;
+    let (values, due) = (prepared.read().to_vec(), count * quantity.size(robot));
+    // Otherwise fewer states would be compared without notice.
+    if values.len() == due { Ok(values) } else { Err(NoAnswer::Failed(format!("{} numbers came, {due} are due", values.len()))) }
+}
