@@ -2,10 +2,10 @@
 
 use crate::args::ListArgs;
 use crate::fail::Fail;
+use crate::message::{self, say};
 use crate::oracles;
 use crate::robots::{self, Loaded};
 use crate::root::Root;
-use crate::say::{self, say};
 use featherbench_bench::{Cell, Context, Engine, Factor, Planted, Robot, Suite};
 use featherbench_engines::{Featherbench, Limits};
 use featherbench_registry::Setup;
@@ -21,7 +21,7 @@ pub fn list(root: &Root, args: &ListArgs) -> Result<(), Fail> {
     if args.json {
         say!("{:#}", json(root, args)?);
     } else {
-        say::text(&text(root, args)?);
+        message::text(&text(root, args)?);
     }
     Ok(())
 }

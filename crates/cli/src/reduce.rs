@@ -5,10 +5,10 @@
 
 use crate::args::{ReduceArgs, RunArgs};
 use crate::fail::Fail;
+use crate::message::say;
 use crate::oracles;
 use crate::robots;
 use crate::root::Root;
-use crate::say::say;
 use ::featherbench_results::{Row, RunInfo};
 use featherbench_bench::{Engine, OWN, Robot};
 use featherbench_engines::{Featherbench, Limits};

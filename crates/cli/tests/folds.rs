@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 
 /// Folds that cannot meet a NaN, by file and a part of the line, and why.
 const HARMLESS: [(&str, &str, &str); 28] = [
-    ("crates/cli/src/robot_file.rs", "deepest.max(depth", "a count"),
+    ("crates/cli/src/robots/robot_file.rs", "deepest.max(depth", "a count"),
     ("crates/cli/tests/outside/native.rs", "clocked.min(", "durations"),
     ("crates/cli/tests/outside/native.rs", "asked.min(", "durations"),
     ("crates/mechanics/dynamics/src/tree_sparse.rs", "rows[parent].end.max(", "indices"),
     ("crates/mechanics/formats/src/export/order.rs", "first_frame[parent].min(", "indices"),
-    ("crates/harness/bench/src/gates.rs", "known.min(bound)", "a row's bound is finite"),
+    ("crates/harness/bench/src/gates/mod.rs", "known.min(bound)", "a row's bound is finite"),
     ("crates/mechanics/reference/examples/golden.rs", "disagreement.max(", "the multi-precision numbers know no NaN"),
     ("crates/mechanics/reference/src/decimal.rs", "digits.max(1)", "a count"),
     ("crates/mechanics/reference/tests/closed.rs", "gap.max(", "the multi-precision numbers know no NaN"),

@@ -8,7 +8,7 @@ pub use analysis::{Estimator, IdentifyArgs, Propagation, Term, UncertaintyArgs};
 pub use judge::{DiffArgs, GateArgs, HistoryArgs, ReportArgs};
 pub use sweep::{ExportArgs, MergeArgs, PlanArgs, ReduceArgs, SweepArgs};
 
-use crate::external::External;
+use crate::oracles::external::External;
 use ::featherbench_results::words;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use featherbench_bench::shard::Shard;

@@ -1,7 +1,7 @@
 //! The command line: runs in shards, and rows for programs that load many.
 
 use super::RunArgs;
-use crate::external::External;
+use crate::oracles::external::External;
 use clap::Args;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;

@@ -25,10 +25,10 @@ mod file;
 mod names;
 mod params;
 mod properties;
-mod repeat;
 mod row;
 mod run_info;
 mod severity;
+mod shell;
 mod trend;
 
 pub use apart::Apart;
@@ -45,11 +45,11 @@ pub use file::{
 pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;
 pub use properties::{Base, Feature, Properties};
-pub use repeat::{quoted, words};
 pub use row::{MARGIN_LIMIT, Row};
 pub use run_info::{
     Convention, Culprit, EngineInfo, EngineSource, Expectation, GateKind, GitInfo, Host, ModelOrigin, RUN_FORMAT, RobotInfo, RunInfo,
     ShardInfo,
 };
 pub use severity::Severity;
+pub use shell::{quoted, words};
 pub use trend::{BESIDE, ChangePoint, Point, Trend, Trended, trends};

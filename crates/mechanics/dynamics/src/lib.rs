@@ -3,8 +3,9 @@
 //! Each algorithm has a workspace, made from a [`Topology`](featherbench_model::Topology). The workspace's `run` does not allocate. A
 //! function beside it makes a workspace for one call.
 //!
-//! What begins with `Packed` computes one state in `f64`, several joints at a time. [`Batch`] computes many states at once. The other algorithms are generic over two scalars: that of the state and that of the parameters. The same text runs on `f64`, `f32`, dual
-//! numbers, and counting and extended-precision scalars. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms* (2008).
+//! What begins with `Packed` computes one state in `f64`, several joints at a time. [`Batch`] computes many states at once. The other algorithms
+//! are generic over two scalars: that of the state and that of the parameters. The same text runs on `f64`, `f32`, dual numbers, and counting and
+//! extended-precision scalars. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms* (2008).
 //!
 //! ```
 //! use featherbench_dynamics::{forward_dynamics, inverse_dynamics, mass_matrix};
@@ -26,22 +27,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # Cost of the hot kernels
+//! # Cost
 //!
-//! [`PackedRnea`], [`PackedCrba`], [`PackedAba`], [`PackedKinematics`], [`Aba`], [`Ltdl`] and [`Batch`] have a section *Cost*. Its words:
-//!
-//! - An *operation* is an instruction that adds, multiplies, multiplies and adds, or divides. It counts once, whether it has one number or a
-//!   register of them. Sine and cosine of a register are 21 operations.
-//! - *Per joint*: the executed instructions of a spatial chain of 64 revolute joints, less those of one of 32, over 32. They are counted by
-//!   single steps through a release build.
-//! - *Cycles* per joint: the same difference of times.
-//! - *Share of the limit*: the processor begins two operations per cycle. So it is half the operations over the cycles.
-//! - *Stack moves*: reads and writes of the stack by instructions on vector registers. They are spills, and small arrays.
-//!
-//! Conditions, where a page names no others: an Intel Xeon with AVX-512 and AMX (a shared virtual machine of two cores, 4.1 GHz by a chain of integer products); rustc 1.95.0.
-//! The AVX-512 build is for the processor itself, the AVX2 build for x86-64-v3. Times are the smallest of thousands, one core, all data in
-//! the caches. They differ by a tenth from run to run. On that processor a multiply-add takes 4 cycles and a division 14. The divider is busy for
-//! 17 cycles with a register of 512 bits, and for 8 with one of 256.
+//! The hot kernels have a section *Cost*. It counts operations. An *operation* is an instruction that adds, multiplies, multiplies and adds, or
+//! divides. It counts once, whether it has one number or a register of them. What was measured and what was tried stands in `docs/kernels/`, a
+//! page per kernel.
 //!
 //! # Robots of a million joints
 //!
@@ -55,19 +45,7 @@
 //! So a chain of 10⁶ joints takes 809 MB for model, [`Aba`] and state (q, v, τ, v̇). A tree-sparse matrix has Σ d_k numbers, d_k the depth of
 //! dof k: on a chain n (n + 1) / 2, on a binary tree of 2²⁰ − 1 joints 19·2²⁰ + 1.
 //!
-//! Times in ms of one call, by `cargo run --release -p featherbench-dynamics --features measurements --example scale`:
-//!
-//! | chain of 10⁶ | one core | two cores | | binary tree of 2²⁰ − 1 | one core | two cores |
-//! |---|---|---|---|---|---|---|
-//! | [`Rnea`] | 46 | | | [`Rnea`], [`ParallelRnea`] | 51 | 26 |
-//! | [`Aba`], [`Twisted`] | 99 | 89 | | [`Aba`], [`ParallelAba`] | 132 | 63 |
-//! | [`Aba::solve`] | 67 | | | [`Crba`], [`ParallelCrba`] | 138 | 67 |
-//! | [`Kinematics`] | 61 | | | [`Ltdl::run`], [`ParallelLtdl::run`] | 98 | 85 |
-//! | [`Refined`], one step | 363 | | | [`Ltdl::solve`] | 22 | |
-//!
-//! [`ParallelLtdl`] is bound by its copies. [`Twisted`] is slower than [`Aba`] on 1000 joints (0.076 against 0.063), and faster from 3000 on (0.18
-//! against 0.20). To generate, check and compile the chain takes 2.1 s and 0.9 GB. Conditions: an AMD EPYC with AVX-512, a virtual machine of two
-//! cores that others used too; rustc 1.95.0; smallest of seven calls, of a thousand for the short ones.
+//! Times of one call: `docs/kernels/parallel.md`.
 
 mod aba;
 mod batch;

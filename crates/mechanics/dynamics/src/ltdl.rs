@@ -21,22 +21,7 @@
 //!   branches many, `ltdl/bushy.rs` takes a dof at a time.
 //! - `ltdl/lanes.rs`, for `f32` and registers of states: rows in fours.
 //!
-//! Nanoseconds for one matrix of `f64`, on a Zen 5 at 2.1 GHz with AVX-512. In brackets stands the ratio to rows in fours; for the inverse,
-//! to one solution in fours for each column. `benches/factors.rs` measures the ratio to the plain text.
-//!
-//! | | factor | solve | inverse |
-//! |---|---|---|---|
-//! | chain 7 | 39 (1.5) | 32 (1.7) | 47 (8.6) |
-//! | chain 36 | 676 (2.5) | 255 (1.7) | 1190 (12) |
-//! | chain 200 | 43900 (3.0) | 5400 (1.5) | 89200 (16) |
-//! | humanoid, 36 dofs | 374 (2.1) | 209 (1.8) | 1070 (12) |
-//! | random tree, 1000 dofs | 10000 (1.2) | 7260 (1.3) | 1.0e6 (9.4) |
-//!
-//! A chain of up to eight dofs is solved in straight-line code since the table was made. On another Zen 5, of 4.1 GHz, that took the chain of 7
-//! from 39 to 14 ns.
-//!
-//! In `f64` the selected inverse takes two to four times as long as the factorization. On chains and the humanoid that is the time of the
-//! inverse, on the random tree a sixteenth of it.
+//! Times, and what was tried: `docs/kernels/ltdl.md`.
 //!
 //! The inverse comes from L X = D⁻¹ L⁻ᵀ. Its right side is zero below the diagonal and 1/D on it. So from the root down, for c < i:
 //! `X_ic = −Σ_j L_ij X_jc` and `X_ii = 1/D_i − Σ_j L_ij X_ij` over the strict ancestors j of i; X_jc = X_cj is known. (The recurrence of
@@ -76,28 +61,7 @@ pub use parallel::ParallelLtdl;
 ///
 /// With d_k the depth of dof k, D1 = Σ (d_k − 1) and D2 = Σ d_k (d_k − 1) / 2. The plain text takes D1 divisions and D2 multiply-subtracts to
 /// factor, and n divisions and 2·D1 multiply-adds to solve. In `f64` and in registers of states a factorization has n divisions, and products
-/// in place of the others. A chain of 36 has D1 = 630 and D2 = 7770, and in `f64` takes the following. Words and conditions are on the
-/// [crate page](crate#cost-of-the-hot-kernels):
-///
-/// | | factor: AVX-512, AVX2 | solve: AVX-512, AVX2 |
-/// |---|---|---|
-/// | operations | 1821, 3516 | 505, 743 |
-/// | of these, on single numbers | 192, 201 | 288, 320 |
-/// | divisions among these | 36, 36 | 12, 9 |
-/// | cycles | 2850, 4000 | 1080, 1190 |
-/// | share of the limit | 0.32, 0.44 | 0.23, 0.31 |
-/// | stack reads | 111, 876 | 0, 9 |
-/// | stack writes | 150, 1030 | 16, 25 |
-///
-/// *Bound* by latency. In the factorization a pivot waits about twenty cycles for the one before it: a division, a product, a multiply-subtract. On
-/// a Zen 5 a chain of 36 takes about 1400 cycles, 720 of them for this; its multiply-subtracts alone would take 500, or 800 with those that a
-/// triangle wastes. In the solution the blocks of a path wait for each other, some fifty cycles each, twice.
-///
-/// *Did not pay*, on a Zen 5 with AVX-512:
-/// - Rows padded to whole registers beside the matrix, with L and with D L: 1.15 to 1.5 times as long.
-/// - Blocks of one row throughout: 1.6 times as long on a humanoid. Blocks of eight throughout: 1.35 times on a chain of 36.
-/// - D_k − H²/D in place of D_k − L H on the way from pivot to pivot: 4 % less, but H² leaves the range of numbers.
-/// - Registers that end with the block's own columns: nothing.
+/// in place of the others. A chain of 36 has D1 = 630 and D2 = 7770. Times: `docs/kernels/ltdl.md`.
 #[derive(Clone, Debug)]
 pub struct Ltdl<T> {
     matrix: TreeSparse<T>,

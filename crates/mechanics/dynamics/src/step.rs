@@ -13,7 +13,7 @@ use featherbench_model::{Axis, Joint, JointKind, Model, Topology};
 use featherbench_spatial::{Force, Motion, Real, RigidBodyInertia, Transform, Vec3};
 
 /// Calls `step(kind, …)` from one arm per kind, so that each inlined copy is compiled with its kind known. Over a scalar that is
-/// [`Real::COMPACT`], and in a debug build, there is one copy, which reads the kind: it is compiled in a fraction of the time.
+/// [`Real::COMPACT`], and in a debug build, there is one copy, which reads the kind (`docs/kernels/compilation.md`).
 macro_rules! by_kind {
     ($scalar:ty, $kind:expr, $step:expr, $($argument:expr),+ $(,)?) => {{
         use featherbench_model::Axis::{Skew, Z};

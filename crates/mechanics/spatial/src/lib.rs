@@ -4,8 +4,8 @@
 //! A [`Transform`] `X` is the placement of a child frame in its parent. It takes child coordinates to parent coordinates; its `inverse_*`
 //! methods go the other way. Products are written with [`Real::mul_add`]: the compiler never fuses `a * b + c` by itself.
 //!
-//! Products of small matrices and the arithmetic of wide scalars are inlined in optimised builds. In debug builds they are calls: tests then
-//! compile in half the time, and run about as fast.
+//! Products of small matrices and the arithmetic of wide scalars are inlined in optimised builds. In debug builds they are calls, so
+//! that tests compile faster (`docs/kernels/compilation.md`).
 //!
 //! Source: R. Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapter 2 and appendix A ("the book" in this workspace).
 

@@ -46,7 +46,7 @@ pub(super) fn apparent_force<T: Real>(kind: JointKind, subspace: Motion<T>, f: T
 /// q̈, where `carried` is a'.
 #[inline(always)]
 pub(super) fn acceleration<T: Real>(link: &Link<T>, carried: Motion<T>) -> T {
-    // the angular part is known first: two short sums are faster than one long sum
+    // two short sums: the angular part is known first (docs/kernels/aba.md)
     link.d_inverse_u - link.u_d_inverse.ang.dot(carried.ang) - link.u_d_inverse.lin.dot(carried.lin)
 }
 

@@ -27,9 +27,8 @@
 //! D is positive if the body itself has inertia along S. Where it has not, [`Aba`] computes the whole chain.
 //!
 //! Cost per revolute joint about z, in operations as [`Counted`](featherbench_spatial::Counted) counts them: 421 on the tip side, as [`Aba`], and
-//! 786 on the base side. A joint of the base side takes 2.35 times as long: its six eliminations wait for each other. With 0.3 of the bodies on the
-//! base side the longer side has 0.7 of the work of [`Aba`], and both together 1.26 times that work. Measured on two cores: 0.83 of the time of
-//! [`Aba`] on 10 000 joints, 0.89 on 10⁶; below some 2000 it does not pay. A call does not allocate, but for `rayon`.
+//! 786 on the base side. With 0.3 of the bodies on the base side the longer side has 0.7 of the work of [`Aba`], and both together 1.26 times
+//! that work. It is for chains of some 2000 joints or more: `docs/kernels/parallel.md`. A call does not allocate, but for `rayon`.
 //!
 //! Accuracy: the error is that of [`Aba`] within a tenth, on chains of 100 and 1000 and with tips a million times as heavy
 //! (`tests/twisted.rs`). The heavy tip is on the tip side, where both algorithms are the same.
@@ -48,8 +47,7 @@ use std::array::from_fn;
 
 mod bracing;
 
-/// The share of the bodies that the base side takes. There both sides take about the same time: a joint of the base side takes 2.35 times that of
-/// the tip side, and has 786 / 421 = 1.87 times the operations, which wait for each other.
+/// The share of the bodies that the base side takes. There both sides take about the same time: `docs/kernels/parallel.md`.
 const SHARE: f64 = 0.30;
 
 /// The workspace of forward dynamics of a chain on two cores.

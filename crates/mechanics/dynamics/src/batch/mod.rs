@@ -76,30 +76,17 @@ use width::Selected;
 ///
 /// # Cost
 ///
-/// Per revolute joint of a chain and group of states: eight with AVX-512, four with AVX2. Every operation is one of a whole register of states.
-/// The words are on the [crate page](crate#cost-of-the-hot-kernels). The times are of a Zen 5 (AMD EPYC, 4.1 GHz), in lane order.
+/// Per revolute joint of a chain and group of states. Every operation is one of a whole register of states: eight with AVX-512, four with AVX2.
 ///
 /// | | inverse dynamics | forward dynamics |
 /// |---|---|---|
 /// | operations | 171 | 446 |
 /// | divisions among these | 0 | 1 |
 /// | registers kept of each body | 12 | 26 |
-/// | cycles, AVX-512 | 120 | 300 |
-/// | share of the limit, AVX-512 | 0.71 | 0.74 |
 ///
 /// They are those of [`Rnea`](crate::Rnea) (146) and [`Aba`](crate::Aba) (421), 21 for sine and cosine, and 4 that look for numbers that are
-/// not finite. The mass matrices of a chain of 36 take 582 operations per joint, at 0.63 of the limit. Row order takes 1.1 times as long as lane
-/// order in inverse dynamics of a chain of 36, and 1.2 times on a chain of 7. A call with fewer states than a group takes as long as one with a
-/// group.
-///
-/// *Bound* by lines of the cache, beside operations: a register of eight `f64` is a line. So the recursions keep few of them. With 27 and 62
-/// registers of each body, calls took 1.1 times as long. A Xeon had 252 cycles with AVX-512 then, and 165 with AVX2, for the same number
-/// of instructions. It was not measured since.
-///
-/// *Did not pay*, on the Zen 5 with AVX-512:
-/// - Two groups at a time, a pair of registers as the scalar. Inverse dynamics took 0.9 (chain of 7) to 0.98 (chain of 36) of the time, forward
-///   dynamics 1.05 to 1.15, the mass matrix 1.03 to 1.06. So latency is not what bounds it. The lean recursions gain more, in all of them.
-/// - The mass matrix with placements formed where they are used, and composite inertias by path slots: 1.00 to 1.05.
+/// not finite. The mass matrices of a chain of 36 take 582 operations per joint. A call with fewer states than a group costs what one with a
+/// group costs. Of each body few registers are kept, because a register of eight `f64` is a line of the cache. Times: `docs/kernels/batches.md`.
 ///
 /// # Width
 ///
@@ -107,18 +94,7 @@ use width::Selected;
 /// are compiled with AVX2 and with AVX-512 too, if the build is narrower, and a batch takes the widest that the processor has
 /// ([`Width`], [`Batch::with_width`]). Derivatives and refined forward dynamics keep the instructions of the build.
 ///
-/// In a build for plain x86-64, times over those of its own SSE2, in lane order:
-///
-/// | | inverse dynamics | forward dynamics | mass matrix | factors |
-/// |---|---|---|---|---|
-/// | chain of 36, AVX2 | 0.45 | 0.44 | 0.52 | 0.55 |
-/// | chain of 36, AVX-512 | 0.31 | 0.35 | 0.45 | 0.51 |
-/// | humanoid, AVX2 | 0.43 | 0.41 | 0.57 | 0.60 |
-/// | humanoid, AVX-512 | 0.31 | 0.33 | 0.45 | 0.50 |
-///
-/// Against a build for the processor itself, selected AVX-512 takes 1.0 to 1.04 times as long in row order, and up to 1.15 times in lane order.
-/// There, groups of four doubles become groups of eight on the way. `f32` is 1.9 to 2.05 times as fast as `f64`. Conditions: an AMD EPYC with
-/// AVX-512, a virtual machine of two cores that others used too, smallest of 60 to 200 calls in alternation.
+/// Times of the widths: `docs/kernels/batches.md`.
 ///
 /// *How*: a register of a selected width is a type over the processor's vectors. A kernel is a part of one function with that width's
 /// instructions, and all that it calls is marked to be always inlined. In a debug build it is not, and a selected width is slow there.

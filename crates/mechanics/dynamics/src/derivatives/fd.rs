@@ -5,15 +5,8 @@
 //! articulated inertias, as forces and accelerations of bodies.
 //!
 //! **Why not −M⁻¹ ∂ID.** That is the same matrix (J. Carpentier & N. Mansard, 2018), but ∂ID is rounded before M⁻¹ meets it. So the result
-//! has the condition number of M in its error, however exact the solution is. Here no joint force is formed. The largest error over the largest
-//! entry, of three random states, in units free of dimension ([`Dual`](featherbench_spatial::Dual) is the articulated-body algorithm over
-//! dual numbers):
-//!
-//! | | ∂v̇/∂q | by −M⁻¹ ∂ID | by `Dual` |
-//! |---|---|---|---|
-//! | planar chain of 50 | 2·10⁻¹⁵ | 2·10⁻¹² | 2·10⁻¹⁵ |
-//! | spatial chain of 50 | 8·10⁻¹⁵ | 5·10⁻¹² | 3·10⁻¹⁵ |
-//! | humanoid | 8·10⁻¹⁶ | 3·10⁻¹⁴ | 4·10⁻¹⁶ |
+//! has the condition number of M in its error, however exact the solution is. Here no joint force is formed. Measured errors:
+//! `docs/kernels/derivatives.md`.
 //!
 //! Frames, tangent space and external wrenches: as [`IdDerivatives`](crate::IdDerivatives) has them. Shapes: q has `nq` numbers; v and τ have
 //! `nv`. Each result is `nv`×`nv`, row after row; it is dense within each tree that stands on the world. Units: SI, angles in radians.

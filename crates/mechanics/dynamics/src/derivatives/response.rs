@@ -391,7 +391,7 @@ fn row_outward<T: Real, const W: usize, const TURNS: bool, const SLIDES: bool, c
         if TURNING {
             sum = (-turn.x).mul_add(tx[w], (-turn.y).mul_add(ty[w], (-turn.z).mul_add(tz[w], sum)));
         }
-        // two short sums are faster than one long sum
+        // two short sums, so that less waits (docs/kernels/aba.md)
         let angular = scaled.ang.x.mul_add(ax[w], scaled.ang.y.mul_add(ay[w], scaled.ang.z * az[w]));
         let linear = (-scaled.lin.x).mul_add(lx[w], (-scaled.lin.y).mul_add(ly[w], (-scaled.lin.z).mul_add(lz[w], sum)));
         let x = linear - angular;

@@ -23,20 +23,7 @@
 //! [`Linearise`] is the right-hand side with its derivatives: [`Analytic`] by recursions, [`ByDuals`] by dual numbers alone.
 //! [`VariationalMidpoint`] needs the energies too: [`Lagrangian`] with [`LagrangianPartials`]. All of them have those but closures.
 //!
-//! # Cost
-//!
-//! Microseconds on the 36-dof humanoid with a motor per dof and h = 1 ms. There [`crate::Aba::run`] takes 2.1. Conditions: the
-//! [crate page](crate#cost-of-the-hot-kernels), built for the processor itself.
-//!
-//! | integrator | step | linearised step | [`Integrator::pull`] |
-//! |---|---|---|---|
-//! | [`SymplecticEuler`] | 2.4 | 36 | 0.7 |
-//! | [`ImplicitMidpoint`] | 16 | 64 | 1.7 |
-//! | [`VariationalMidpoint`] | 33 | not measured | not measured |
-//! | [`RungeKutta4`] | 9.6 | 154 | 2.9 |
-//! | [`DormandPrince`], no stage shared | 17 | 264 | 4.4 |
-//!
-//! One [`Linearise::linearise`] takes 35 with [`Analytic`], and 580 with [`ByDuals`].
+//! Times of steps, linearised steps and [`Integrator::pull`]: `docs/kernels/integrators.md`.
 
 mod adjoint;
 mod analytic;

@@ -73,9 +73,8 @@ pub(super) struct Single {
 }
 
 impl Single {
-    /// By the dofs per block, as measured on a Zen 4. A binary tree has 1: a solution takes 0.5 times as long as in blocks, and a factorization 0.65
-    /// (depth 4) to 0.8 (6 and 10). A random tree has 1.9 to 2.4: from the leaves blocks are faster, from the root they are slower. A centipede has
-    /// 2.5, and blocks are faster.
+    /// By the dofs per block: 1 on a binary tree, about 2 on a random tree, 2.5 on a centipede. The limits 3/2 and 5/2 come from measurements:
+    /// `docs/kernels/ltdl.md`.
     fn of(deepest: usize, size: usize, blocks: usize) -> Self {
         let short = (2..=bushy::LONGEST).contains(&deepest);
         Self {
@@ -95,7 +94,7 @@ const LONG: usize = 64;
 /// The size of the next block of a run of which `rest` dofs are left.
 ///
 /// A short run is one block: what its pivots wait for is all in registers. In a run of medium length smaller blocks overlap better while
-/// pivots wait for each other: with AVX-512, 36 dofs in blocks of 8, 6 and 4 take 890, 650 and 690 ns.
+/// pivots wait for each other (`docs/kernels/ltdl.md`).
 fn size(rest: usize) -> usize {
     if rest <= LANES {
         rest

@@ -13,8 +13,7 @@
 //!
 //! Where no path is longer than five dofs, a factorization is the book's text on single numbers, with one division per dof.
 //!
-//! What bounds a solution: latency, some ten cycles per depth and way, and the reading of L. What bounds a factorization: a division and some
-//! twenty cycles per depth, and a multiply-subtract, an addition and a store per dof and ancestor.
+//! A factorization takes a multiply-subtract, an addition and a store per dof and ancestor. What bounds both: `docs/kernels/ltdl.md`.
 
 use super::registers::{LANES, load, store, subtract};
 use crate::TreeSparse;
@@ -29,8 +28,8 @@ pub(super) const LONGEST: usize = 4 * LANES;
 
 /// The longest path of a factorization.
 pub(super) const DEEPEST: usize = 2 * LANES;
-/// The most dofs of a factorization. It takes some 12 µs of them, and threads would gain nothing: so [`ParallelLtdl`](crate::ParallelLtdl) has the
-/// same bits by leaving such trees to one thread.
+/// The most dofs of a factorization. Threads would gain nothing on so few: so [`ParallelLtdl`](crate::ParallelLtdl) has the same bits by leaving
+/// such trees to one thread.
 pub(super) const MOST: usize = 1024;
 /// Where no path is longer, a factorization takes a number at a time: registers would be nearly empty.
 const SHORT: usize = 5;

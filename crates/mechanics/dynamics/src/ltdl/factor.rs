@@ -5,13 +5,10 @@
 //! sums take them in turn where the block has four rows or fewer.
 //!
 //! Accuracy: a row is multiplied by 1/D in place of being divided by D. Two numbers are rounded in place of one: an L can be off by one more
-//! unit in the last place. The products L D L are formed from the rounded L, and LᵀDL reproduces M to 1e-16 of its norm in the tests. The
-//! largest errors of M⁻¹ (entries over the roots of their diagonals, against double-double): 7.8e-13 on a chain of 36 and 1.4e-12 on one of
-//! 50, with divisions 4.9e-13 and 1.3e-12.
+//! unit in the last place. The products L D L are formed from the rounded L, and LᵀDL reproduces M to 1e-16 of its norm in the tests. Errors of
+//! M⁻¹ with and without divisions: `docs/kernels/ltdl.md`.
 //!
-//! What bounds it, and what did not pay: see [`Ltdl`](crate::Ltdl).
-//!
-//! What paid most:
+//! For speed (`docs/kernels/ltdl.md`):
 //!
 //! - No function call for the last, incomplete register: the matrix has padding.
 //! - No load that overlaps a narrower store shortly after it.

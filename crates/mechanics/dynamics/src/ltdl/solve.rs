@@ -2,9 +2,7 @@
 //!
 //! In depth-first order the path to a block is that to the block before it, cut. So the numbers that belong to the path are kept
 //! consecutively beside x, and a tree is solved like a chain. It is read and written in whole registers at multiples of eight: a load that
-//! overlaps a narrower store shortly after it waits for the store to end. Without this, trees took 1.4 times as long.
-//!
-//! What bounds it: see [`Ltdl`](crate::Ltdl).
+//! overlaps a narrower store shortly after it waits for the store to end (`docs/kernels/ltdl.md`).
 
 use super::blocks::{Block, Plan, by_size, down, starts, triangle, up};
 use super::bushy;

@@ -9,8 +9,8 @@
 //!    own origin. Nothing is rotated.
 //! 3. Pass 3, outward: q̈ = D⁻¹ (u − Uᵀ a'), where a' is the parent's acceleration less the reference. It starts from −g.
 //!
-//! With one reference along the whole path, and gravity in it, pass 1 would be that of inverse dynamics. But long chains and falling robots
-//! would lose up to a hundred times as many digits: u would be a small difference of large forces.
+//! A segment has a reference of its own, so that u is no small difference of large forces on long chains and in robots that fall
+//! (`docs/kernels/aba.md`).
 //!
 //! Frames, shapes and units: as in [`PackedRnea`](crate::PackedRnea). Cost: O(n), with one division per one-dof joint. A call does not
 //! allocate.
@@ -29,7 +29,7 @@ use featherbench_spatial::{ArticulatedInertia, Force, Ldl3, Mat3, Motion, Vec3};
 ///
 /// # Cost
 ///
-/// Operations and times per revolute joint of a chain; words and conditions are on the [crate page](crate#cost-of-the-hot-kernels).
+/// Operations per revolute joint of a chain, as the compiled code has them. Pass 2 has one joint at a time, so an operation fills one lane.
 ///
 /// | | AVX-512, joints in eights | AVX2, in fours |
 /// |---|---|---|
@@ -37,19 +37,8 @@ use featherbench_spatial::{ArticulatedInertia, Force, Ldl3, Mat3, Motion, Vec3};
 /// | pass 2, single numbers | 157 | 164 |
 /// | pass 3, single numbers | 18 | 19 |
 /// | divisions among these | 1 | 1 |
-/// | cycles | 224 | 240 |
-/// | share of the limit | 0.49 | 0.55 |
-/// | stack reads, writes in pass 2 | 70, 47 | 145, 103 |
 ///
-/// *Bound* by pass 2. It has one joint at a time, so an operation fills one lane. And a joint waits for the one below: U, D, the division, the rank
-/// one, the translation and the sum take about 75 cycles by the latencies of their instructions. Its numbers do not fit the registers (16 with
-/// AVX2, 32 with AVX-512): the inertia below alone has 21.
-///
-/// *Did not pay:*
-/// - One reference acceleration for pass 1 along the whole path, with gravity in it. The error grew up to a hundred times in robots that fall, and
-///   28 times on a chain of 100 that hangs. Without gravity two of 67 robots were beyond the gate. A reference per segment is meant for fast
-///   robots; on these robots it changed little.
-/// - Iᴬ and U translated before the division is done (rank one last): chain-spatial-12-free lost digits.
+/// Times, and what was tried: `docs/kernels/aba.md`.
 #[derive(Clone, Debug)]
 pub struct PackedAba {
     motions: Motions,
@@ -197,7 +186,7 @@ impl PackedAba {
             let carried = Motion::new(above.ang, above.ang.cross_add(frame.displacement.lane(k), above.lin));
             last = match &eliminated[i] {
                 Eliminated::Screw { u_d_inverse, d_inverse_u } => {
-                    // the angular part is known first: two short sums are faster than one long sum
+                    // two short sums: the angular part is known first (docs/kernels/aba.md)
                     let rate = d_inverse_u - u_d_inverse.ang.dot(above.ang) - u_d_inverse.lin.dot(above.lin);
                     a[joint.v] = rate;
                     let subspace = frame.subspace.lane(k);

@@ -8,13 +8,12 @@
 //! - ω̇ = ω̇_p + ω_p × ω_J + ω̇_J and p̈ = p̈_p + ω̇_p × d + ω_p × (ω_p × d) + (ω_p + ω) × v_J + v̇_J,
 //!
 //! where ω_J, v_J, ω̇_J, v̇_J are the parts of S q̇ and S q̈. Each is a few multiply-adds of one register. Sums over registers of joints have
-//! fewer. But they need R transposed, and their steps are additions too: twice the time.
+//! fewer. But they need R transposed, and their steps are additions too (`docs/kernels/kinematics.md`).
 //!
 //! Positions are summed from the root body's origin. So a robot far from the world's origin loses no digits of its shape.
 //!
 //! Cost: L has 18 multiply-adds per register of joints, beside sine and cosine. In registers of one vector a revolute joint has 9 operations
-//! for R, 5 for the position, 8 for the velocity and 10 for the acceleration. R waits for three dependent multiply-adds per joint. Times: see
-//! [`PackedKinematics`](crate::PackedKinematics).
+//! for R, 5 for the position, 8 for the velocity and 10 for the acceleration. R waits for three dependent multiply-adds per joint.
 
 use super::lanes::{LANES, Lanes, Pack, from_lanes, load};
 use super::model::{PackedModel, Segment, is_screw};

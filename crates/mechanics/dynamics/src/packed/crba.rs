@@ -29,26 +29,9 @@ use std::ops::Range;
 ///
 /// # Cost
 ///
-/// Words and conditions are on the [crate page](crate#cost-of-the-hot-kernels). Of a chain of 36 revolute joints, per joint:
-///
-/// | | AVX-512, joints in eights | AVX2, in fours |
-/// |---|---|---|
-/// | operations | 79 | 137 |
-/// | of these, steps 1 to 3 | 59 | 97 |
-/// | cycles | 119 | 165 |
-/// | share of the limit | 0.33 | 0.42 |
-/// | stack reads, writes | 7, 9 | 38, 37 |
-///
-/// Step 4 takes 6 operations per row and register of ancestors, and 6 per register of rows and segment above it. Steps 1 to 3 do not depend on
-/// the depth: 55 operations per joint where all lanes are full. There is no division.
-///
-/// *Bound* by latency rather than by a unit: arithmetic is at 0.33 of its limit, and reads at 0.35 of two per cycle. Orientations wait 12 cycles
-/// per joint. Then the blocks wait for each other from the leaves, for centres and again for inertias. In the AVX-512 build step 2 has most
-/// stack moves, 35 reads and 34 writes per eight joints, and `climb` of step 4 has none.
-///
-/// *Did not pay:* composite inertias at the joints' origins, and what a body supports as the difference of two of them. M had 1.15 times the best
-/// engine's error in the mean and 4.2 at most, and up to 6e-14 on real robots. About centres of mass the largest is 4e-15, in the same time.
-/// What did not pay for orientations is told at [`PackedRnea`](crate::PackedRnea).
+/// Steps 1 to 3 take 55 operations per joint where all lanes are full (joints in eights), whatever the depth. Step 4 takes 6 operations per row
+/// and register of ancestors, and 6 per register of rows and segment above it. There is no division. Times, and what was tried:
+/// `docs/kernels/crba.md`.
 #[derive(Clone, Debug)]
 pub struct PackedCrba {
     orientations: Orientations,
@@ -119,7 +102,7 @@ impl PackedCrba {
         Ok(())
     }
 
-    /// Step 1 for a block; the blocks after it are done. The steps are functions of their own: inside one function they were 5 % slower.
+    /// Step 1 for a block; the blocks after it are done. Each step is a function of its own: `docs/kernels/crba.md`.
     #[inline(never)]
     fn find_centers(&mut self, model: &PackedModel, b: usize) {
         let (block, frame, composite) = (&model.blocks[b], &self.orientations.frames[b], &mut self.composites[b]);

@@ -37,28 +37,14 @@ use featherbench_spatial::{Mat3, Motion, Transform};
 ///
 /// # Cost
 ///
-/// Per revolute joint of a chain; words and conditions are on the [crate page](crate#cost-of-the-hot-kernels). `place` gives
-/// positions, `set_moving` velocities too, `run` accelerations too.
+/// Per revolute joint of a chain. `place` gives positions, `set_moving` velocities too, `run` accelerations too.
 ///
 /// | | [`place`](Self::place) | [`set_moving`](Self::set_moving) | [`run`](Self::run) |
 /// |---|---|---|---|
 /// | operations in registers of one vector | 14 | 22 | 33 |
-/// | operations in registers of joints: AVX-512, AVX2 | 5, 10 | 5, 10 | 5, 10 |
-/// | cycles, of a chain of 36: AVX-512, AVX2 | 26, 29 | 28, 36 | 35, 47 |
-/// | share of the limit: AVX-512, AVX2 | 0.37, 0.41 | 0.48, 0.44 | 0.54, 0.46 |
-/// | stack reads, writes: AVX-512 | 0, 0 | 0, 0 | 0, 0 |
-/// | stack reads, writes: AVX2 | 0, 0 | 0, 0 | 6, 6 |
 ///
-/// A register of joints takes 39 operations: 21 for sine and cosine, 18 for L. A vector fills three of four lanes of 256 bits in both builds.
-/// There is no division.
-///
-/// *Bound* by latency: with AVX-512 twice the operations take a third more time. Each orientation waits for three dependent operations, 12
-/// cycles. The rotations across the joints of all blocks come first. When they came block by block, right before the bodies, it took 1.3 to 1.6
-/// times as long with AVX-512.
-///
-/// *Did not pay:* sums over lanes, as in [`PackedAba`](crate::PackedAba). They were 2.1 times as fast as link by link on the chain of 36, where going
-/// from body to body is 4.2 times as fast. The sums, the transposition of R and the step that makes it straight cost more than the whole of the
-/// latter.
+/// A register of joints takes 39 operations more: 21 for sine and cosine, 18 for L. There is no division. The rotations across the joints of all
+/// blocks come first, because each orientation waits for the one before. Times: `docs/kernels/kinematics.md`.
 #[derive(Clone, Debug)]
 pub struct PackedKinematics {
     bodies: Bodies,

@@ -24,28 +24,10 @@ use featherbench_spatial::{Force, Mat3, Motion, Real, Vec3};
 ///
 /// # Cost
 ///
-/// Per revolute joint of a chain; words and conditions are on the [crate page](crate#cost-of-the-hot-kernels).
-///
-/// | | AVX-512, joints in eights | AVX2, in fours |
-/// |---|---|---|
-/// | operations in registers of joints | 29 | 57 |
-/// | operations in registers of one vector | 29 | 29 |
-/// | cycles, of a chain of 36 | 76 | 85 |
-/// | share of the limit | 0.38 | 0.51 |
-/// | stack reads, writes | 4, 6 | 18, 17 |
-///
 /// A register of eight joints takes 39 operations for the rotations across them (21 for sine and cosine), 150 for the forces, and 39 for the
-/// sums and the projection. The walk over the bodies has the operations of one vector. There is no division.
-///
-/// *Bound* by latency: each orientation waits 12 cycles for the one before. The rotations across the joints of all blocks come first. When they
-/// came block by block, right before the bodies, the whole took 1.2 times as long with AVX-512. In the AVX-512 build the forces need no stack.
-///
-/// *Did not pay:*
-/// - Orientations as quaternions, multiplied over lanes in log₂(lanes) steps: a tenth less time. But the error over the best engine's rose from
-///   0.82 to 1.19 in the mean, and to 4.6 at most with external wrenches. A matrix keeps the exact zeros and ones of aligned axes, and a
-///   quaternion does not.
-/// - Orientations without the step that makes them straight again: 1.2 times the error in the mean, and 3.2 times the best engine's with external
-///   wrenches on one robot. M had 1.6 times the error in the mean.
+/// sums and the projection. The walk over the bodies takes 29 operations in registers of one vector per revolute joint. There is no division.
+/// The rotations across the joints of all blocks come first, because each orientation waits for the one before. Times, and what was tried:
+/// `docs/kernels/rnea.md`.
 #[derive(Clone, Debug)]
 pub struct PackedRnea {
     bodies: Bodies,
@@ -143,7 +125,7 @@ impl PackedRnea {
         Ok(())
     }
 
-    /// Step 2 for a block. It is a function of its own: inside a larger one the compiler does not inline all of it.
+    /// Step 2 for a block. It is a function of its own: `docs/kernels/rnea.md`.
     #[inline(never)]
     fn push(&mut self, model: &PackedModel, b: usize) {
         let (block, r) = (&model.blocks[b], straightened(self.bodies.rotation(b)));

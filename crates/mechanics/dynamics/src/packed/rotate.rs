@@ -1,7 +1,7 @@
 //! Rotations of the lanes of a register, a register of two halves, and stores of some lanes.
 //!
-//! Each is one instruction. Written as loops over lanes, they become unaligned loads of a value that was just stored. Such a load waits
-//! for the store, which made inverse dynamics a third slower.
+//! With AVX2 or AVX-512 each is one instruction. Written as loops over lanes, they become unaligned loads of a value that was just stored, and
+//! such a load waits for the store (`docs/kernels/packed.md`).
 
 use super::lanes::{LANES, Pack};
 use wide::f64x4;

@@ -13,8 +13,8 @@
 //!
 //! The bounds hold while nothing overflows or underflows: every nonzero operand and result is within about 2⁻⁹⁰⁰ … 2⁹⁹⁰.
 //!
-//! Sums, products and quotients of numbers are calls: a kernel holds thousands of them, and as parts of it they took most of the time of
-//! compiling. Those of registers are parts of their callers.
+//! Sums, products and quotients of numbers are calls, because a kernel holds thousands of them (`docs/kernels/compilation.md`). Those of registers
+//! are parts of their callers.
 //!
 //! An infinite result becomes NaN in the next operation at the latest, and NaN stays NaN.
 

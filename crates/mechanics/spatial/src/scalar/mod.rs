@@ -42,8 +42,8 @@ pub trait Real:
     + SubAssign
     + MulAssign
 {
-    /// Whether kernels over this scalar are compiled as one text for all joint kinds. Over others each kind has a copy of its own: that is
-    /// faster, and takes several times as long to compile.
+    /// Whether kernels over this scalar are compiled as one text for all joint kinds. Over others each kind has a copy of its own
+    /// (`docs/kernels/compilation.md`).
     const COMPACT: bool = false;
 
     /// The scalar nearest to `value`.

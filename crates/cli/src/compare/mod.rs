@@ -1,0 +1,213 @@
+//! `featherbench compare`: do the engines read a robot's file alike, and if not, where and why?
+
+pub mod compared;
+pub mod outcome;
+pub mod table;
+pub mod timeout;
+
+use crate::args::CompareArgs;
+use crate::compare::timeout::Patient;
+use crate::fail::Fail;
+use crate::message::say;
+use crate::oracles;
+use crate::oracles::engines::{self, Asked};
+use crate::progress::Bar;
+use crate::robots;
+use crate::robots::robot_file;
+use crate::root::Root;
+use crate::run::About;
+use crate::{message, report, run};
+use ::featherbench_results::{ModelOrigin, Verdict};
+use featherbench_bench::run::{Opening, Run};
+use featherbench_bench::{Cell, Context, Engine, Engines, FileFormat, OWN, Robot, RobotFile, hash, provenance};
+use featherbench_comparison::import::answers;
+use featherbench_comparison::{Agreement, Import};
+use featherbench_engines::Limits;
+use featherbench_model::Warning;
+use std::time::{Duration, Instant, SystemTime};
+
+/// States per robot, besides the keyframes of its file: one of each case.
+const STATES: usize = featherbench_robots::StateBatch::HEAD;
+/// The name in the place of a suite's.
+const NAME: &str = "compare";
+/// Seed of the states.
+const SEED: u64 = 1;
+/// A robot with more degrees of freedom is asked on the neutral route for what the comparison shows, and for nothing else.
+const LARGE: usize = 500;
+
+/// Compares robots by both routes and reports.
+pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
+    let start = Instant::now();
+    let described = oracles::described(root)?;
+    let engines = engines(args, &described)?;
+    let compiler = described.compiler(FileFormat::Mjcf).map_or("", |engine| engine.name.as_str());
+    // Bad files are told before anything is installed or started, and the others are compared.
+    let mut bad: Vec<Fail> = Vec::new();
+    let opened: Vec<RobotFile> = args.files.iter().filter_map(|file| kept(robot_file::open(file, args.floating), &mut bad)).collect();
+    // Our own reading of a URDF needs no engine.
+    let read = opened
+        .into_iter()
+        .map(|file| if file.format == FileFormat::Urdf { read_file(file, None).map(Some) } else { Ok(Some(Source::Unread(file))) });
+    let files: Vec<Source> = read.filter_map(|robot| kept(robot, &mut bad).flatten()).collect();
+    if files.is_empty() {
+        return Err(ended(bad));
+    }
+    let gates = root.read_gates()?;
+    let hash = hashes(&files);
+    let mut robots: Vec<Robot> = Vec::new();
+    eprintln!("starting {} …", engines.join(", "));
+    let limits = Limits { answer: Duration::from_secs(args.timeout), ..Limits::default() };
+    let mut opened = engines::open(root, &Asked::live(root, &engines, limits))?;
+    if let Some(missing) = opened.missing(&engines).first() {
+        let message = format!("{} does not answer: {}", missing.name, missing.reason);
+        return Err(Fail::Missing { message, advice: "look at `featherbench oracles status`, or leave it out with --engines".into() });
+    }
+    let patient = |engine: Box<dyn Engine>| -> Box<dyn Engine> {
+        if engine.identity().name == OWN { engine } else { Box::new(Patient::new(engine)) }
+    };
+    opened.engines = opened.engines.into_iter().map(patient).collect();
+    let mut remarks: Vec<(String, Vec<String>)> = Vec::new();
+    for file in files {
+        let read = match file {
+            Source::Unread(file) => {
+                read_file(file, opened.engines.iter().find(|engine| engine.identity().name == compiler).map(AsRef::as_ref))
+            }
+            read => Ok(read),
+        };
+        let Some(Source::Read { robot, remarks: about }) = kept(read, &mut bad) else { continue };
+        let robot = *robot;
+        let twice = robots.iter().filter(|known| known.name == robot.name || known.name.starts_with(&format!("{} (", robot.name)));
+        let count = twice.count();
+        let name = if count == 0 { robot.name.clone() } else { format!("{} ({})", robot.name, count + 1) };
+        remarks.push((name.clone(), about));
+        robots.push(Robot { name, ..robot });
+    }
+    if robots.is_empty() {
+        return Err(ended(bad));
+    }
+
+    let started = SystemTime::now();
+    let folder = args.out.clone().unwrap_or_else(|| run::folder(root, NAME, started));
+    let about = About { suite: NAME, hash: &hash, seed: SEED, live: true, robots: &robots };
+    let info = run::describe(root, provenance::collect(root.path()), &about, &opened, started)?;
+    run::tell_notes(&info);
+    let mut run = Run::open(&folder, Opening::New, info)?;
+    run.info.seconds.insert("setup".into(), start.elapsed().as_secs_f64());
+    let context = Context { robots: &robots, engines: &opened.engines, gates: &gates, seed: SEED };
+    let shown = ["readback", "id", "bias", "mass_matrix_probe"];
+    let keep = |cell: &Cell| {
+        let large = robots.iter().any(|robot| robot.name == cell.robot && robot.states.nv > LARGE);
+        cell.study != "agreement" || !large || shown.contains(&cell.quantity.as_str())
+    };
+    let records = run.conduct(&[Box::new(Import), Box::new(Agreement)], &context, &keep, &Bar::new())?;
+    let conditions = |robot| outcome::conditions(robot, &opened.engines, &records, args.strict);
+    run.info.expected = robots.iter().flat_map(conditions).collect();
+    run.info.drawings = run::drawings(&run.info, &records, &robots);
+    run.info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
+    run.write(&records, &featherbench_registry::dictionary(&records))?;
+    let page = report::render(&folder, &run.info, &records)?;
+    let info = &run.info;
+    let unmet: Vec<_> = info.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).collect();
+    if args.json {
+        let told: Vec<(&Robot, &[String])> = robots.iter().zip(remarks.iter().map(|(_, remarks)| remarks.as_slice())).collect();
+        say!("{:#}", compared::json(info, &page, &told, &records, &bad));
+    } else {
+        message::text(&table::answers(&answers(&records)));
+        for (robot, (_, remarks)) in robots.iter().zip(&remarks) {
+            message::text(&table::of(robot, remarks, &opened.engines, &records));
+        }
+        say!("report: {}", page.display());
+        for condition in &unmet {
+            say!("differs: {}: {}", condition.what, condition.reason);
+        }
+    }
+    if !bad.is_empty() {
+        return Err(ended(bad));
+    }
+    if unmet.is_empty() {
+        Ok(())
+    } else {
+        Err(Fail::Gate(format!("the engines differ: {} of {} questions have the answer no", unmet.len(), info.expected.len())))
+    }
+}
+
+/// The good ones; what is wrong with a file is told at once and kept for the end.
+fn kept<T>(result: Result<T, Fail>, bad: &mut Vec<Fail>) -> Option<T> {
+    match result {
+        Ok(good) => Some(good),
+        Err(fail) => {
+            eprintln!("not compared: {fail}");
+            bad.push(fail);
+            None
+        }
+    }
+}
+
+/// The end of a comparison of which some files, or all, are bad.
+fn ended(mut bad: Vec<Fail>) -> Fail {
+    match bad.len() {
+        1 => bad.remove(0),
+        many => Fail::input(format!("{many} files cannot be compared: {}", bad.iter().map(Fail::to_string).collect::<Vec<_>>().join("; "))),
+    }
+}
+
+/// A robot on its way to being compared.
+enum Source {
+    /// Its reference reading needs MuJoCo.
+    Unread(RobotFile),
+    /// The reference reading, and what it leaves out that a user should know.
+    Read { robot: Box<Robot>, remarks: Vec<String> },
+}
+
+impl Source {
+    fn hash(&self) -> &str {
+        match self {
+            Self::Unread(file) => &file.hash,
+            Self::Read { robot, .. } => &robot.hash,
+        }
+    }
+}
+
+/// The engines that are asked: those that read files.
+fn engines(args: &CompareArgs, described: &Engines) -> Result<Vec<String>, Fail> {
+    let readers = described.names(|engine| !engine.reads.is_empty());
+    let all = || readers.iter().map(|&name| name.to_owned()).collect();
+    let engines = args.engines.clone().unwrap_or_else(all);
+    match engines.iter().find(|name| !readers.contains(&name.as_str())) {
+        Some(unknown) => {
+            let near = featherbench_bench::did_you_mean(unknown, readers.iter().copied());
+            Err(Fail::input(format!("--engines: there is no '{unknown}'{near}; choose from {}", readers.join(", "))))
+        }
+        None => Ok(engines),
+    }
+}
+
+fn hashes(files: &[Source]) -> String {
+    hash::of_parts(&files.iter().map(|file| file.hash().as_bytes()).collect::<Vec<_>>())
+}
+
+/// The reference reading of a file, at its states; an MJCF file needs its compiler.
+fn read_file(mut file: RobotFile, compiler: Option<&dyn Engine>) -> Result<Source, Fail> {
+    let (description, warnings, keyframes, remarks) = match file.format {
+        FileFormat::Urdf => {
+            let (description, notes) = robots::read_urdf(&file)?;
+            file.links = robots::links(&file)?;
+            let remarks = notes.iter().map(ToString::to_string).filter(|note| note.contains("mimic")).collect();
+            (description, robots::normalised(notes), Vec::new(), remarks)
+        }
+        FileFormat::Mjcf => {
+            let message =
+                || format!("{}: MuJoCo's compiler is the reference of MJCF files; do not leave it out of --engines", file.path.display());
+            let reading = robots::read_mjcf(&file, compiler.ok_or_else(|| Fail::input(message()))?)?;
+            let remarks = reading.notes.iter().filter(|note| note.cause == "free_armature");
+            let remarks = remarks.map(|note| format!("joint '{}': {}", note.about.as_deref().unwrap_or_default(), note.text));
+            let loops = reading.description.warnings().into_iter().filter(|warning| matches!(warning, Warning::Loops { .. }));
+            let remarks = remarks.chain(loops.map(|warning| warning.to_string())).collect();
+            (reading.description, Vec::new(), reading.keyframes, remarks)
+        }
+    };
+    let malformed = |error: &dyn std::error::Error| Fail::input(format!("{}: {error}", file.path.display()));
+    let robot = Robot::new(&description, "file", ModelOrigin::Robot, STATES, SEED).map_err(|error| malformed(&error))?;
+    let robot = robot.with_warnings(warnings).with_keyframes(&keyframes, SEED).map_err(|error| malformed(&error))?;
+    Ok(Source::Read { robot: Box::new(robot.from_file(file)), remarks })
+}
