@@ -41,7 +41,7 @@ pub fn agrees(engine: &Oracle) {
 }
 
 /// The counts of faer's symbolic analysis: nothing is filled leaves first, everything of each tree root first. Minimum degree fills nothing
-/// either (METHODOLOGY, "Fill-in"), and faer's approximation of it fills a little on some robots: 16 numbers on the hand.
+/// either (`guide/studies/scaling.md`, "Fill-in"), and faer's approximation of it fills a little on some robots: 16 numbers on the hand.
 pub fn fills_as_the_theory_says(faer: &Oracle) {
     let words = ["chain:n=36,layout=spatial", "star-30", "humanoid", "hand", "g1", "binary_tree:depth=8", "tree:n=100,seed=6,spread=0.3"];
     for words in words {

@@ -48,8 +48,8 @@ pub use twisted::Twisted;
 /// | [`run`](Self::run) | 268 | 107 | 45 | 1 | 1 |
 /// | [`solve`](Self::solve) | 46 | 15 | 16 | 0 | 0 |
 ///
-/// Of each body 26 numbers are kept: the six of R that turn, c, pᴬ, U D⁻¹, D⁻¹ and D⁻¹ u. Iᴬ, ω and a are kept for the bodies on one path, because
-/// a smaller workspace is faster. Times: `docs/kernels/aba.md`.
+/// Such a joint uses 26 of the 53 numbers of a body: the six of R that turn, c, pᴬ, U D⁻¹, D⁻¹ and D⁻¹ u. Its Iᴬ, ω and a are kept for the bodies
+/// on one path only, because fewer lines of the cache are faster. Times: `docs/kernels/aba.md`.
 #[derive(Clone, Debug)]
 pub struct Aba<T> {
     /// Of each body.

@@ -9,7 +9,7 @@
 //! states are in row order, as users have them; for the limit, a thousand are in lane order.
 //!
 //! The limit is operations per joint over the multiply-adds that one core makes per nanosecond in full vectors: 142 for inverse and 396 for
-//! forward dynamics (METHODOLOGY, "Timing"). The *workspace* is what a batch keeps of each joint, 12 and 26 registers. Where it is larger than
+//! forward dynamics (`guide/studies/timing.md`, "The machine"). The *workspace* is what a batch keeps of each joint, 12 and 26 registers. Where it is larger than
 //! the second cache, each call waits for memory.
 
 use featherbench_dynamics::{Batch, BatchError, Number, to_lanes};

@@ -78,8 +78,10 @@ pub trait Study: Sync {
     /// Evaluates one cell.
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome;
 
-    /// Turns the outcomes of one robot into rows.
-    fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row>;
+    /// Turns the outcomes of one robot into rows. Studies without robots of the suite have none.
+    fn compare(&self, _context: &Context, _robot: &Robot, _finished: &[Finished]) -> Vec<Row> {
+        Vec::new()
+    }
 
     /// Whether [`compare_all`](Self::compare_all) or [`side_file`](Self::side_file) may have something to say: then the outcomes of all robots
     /// are in memory together. A study that says no is compared robot by robot, and these two are not asked.

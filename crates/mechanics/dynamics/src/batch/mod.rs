@@ -82,11 +82,11 @@ use width::Selected;
 /// |---|---|---|
 /// | operations | 171 | 446 |
 /// | divisions among these | 0 | 1 |
-/// | registers kept of each body | 12 | 26 |
+/// | registers used of each body | 12 | 26 |
 ///
 /// They are those of [`Rnea`](crate::Rnea) (146) and [`Aba`](crate::Aba) (421), 21 for sine and cosine, and 4 that look for numbers that are
 /// not finite. The mass matrices of a chain of 36 take 582 operations per joint. A call with fewer states than a group costs what one with a
-/// group costs. Of each body few registers are kept, because a register of eight `f64` is a line of the cache. Times: `docs/kernels/batches.md`.
+/// group costs. Of each body few registers are used, because a register of eight `f64` is a line of the cache. Times: `docs/kernels/batches.md`.
 ///
 /// # Width
 ///

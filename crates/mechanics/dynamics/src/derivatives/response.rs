@@ -8,9 +8,9 @@
 //! outward   a' = X a_p + [0; 2 δω × w] + ρ,  x = y − D⁻¹ Uᵀ a' − 2 D⁻¹ (Sᵀ Bᴬ) δω,  a = a' + S x
 //! ```
 //!
-//! Here e is one at the lane's dof in ∂v̇/∂τ, and zero elsewhere. p begins with what the lane's joint passes to its parent. ρ is added where the
-//! lane's dof is met, and δω lasts from there on. Row k of the result is x at dof k. Bodies that support no lane's dof are passed over on the
-//! way inward. Trees without a lane's dof have zeros.
+//! Here e is one at the lane's dof in ∂v̇/∂τ, and zero elsewhere. The force p begins with what the lane's joint passes to its parent. The field ρ is
+//! added where the lane's dof is met, and δω lasts from there on. Row k of the result is x at dof k. Bodies that support no lane's dof are passed
+//! over on the way inward. Trees without a lane's dof have zeros.
 //!
 //! Frames and symbols: those of `articulated.rs`. Cost per row and lane, in multiply-adds of a revolute joint: 15 outward, 9 more below the
 //! lane's dof, and 15 inward for each ancestor. Nothing here allocates.
@@ -391,7 +391,7 @@ fn row_outward<T: Real, const W: usize, const TURNS: bool, const SLIDES: bool, c
         if TURNING {
             sum = (-turn.x).mul_add(tx[w], (-turn.y).mul_add(ty[w], (-turn.z).mul_add(tz[w], sum)));
         }
-        // two short sums, so that less waits (docs/kernels/aba.md)
+        // two short sums wait less than one long sum (docs/kernels/aba.md)
         let angular = scaled.ang.x.mul_add(ax[w], scaled.ang.y.mul_add(ay[w], scaled.ang.z * az[w]));
         let linear = (-scaled.lin.x).mul_add(lx[w], (-scaled.lin.y).mul_add(ly[w], (-scaled.lin.z).mul_add(lz[w], sum)));
         let x = linear - angular;

@@ -6,7 +6,7 @@ use super::STUDY;
 use crate::scenes::section::views;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
-use featherbench_study::known::{passed, table};
+use featherbench_study::known::{beside, passed, table};
 use maud::{Markup, html};
 
 /// Of each method: its name, and of each problem its name, iterations and a value.
@@ -98,11 +98,6 @@ fn existence(rows: &[&Row]) -> Vec<[f64; 4]> {
     let mut angles: Vec<[f64; 4]> = rows.iter().filter_map(of).collect();
     angles.sort_by(|a, b| a[0].total_cmp(&b[0]));
     angles
-}
-
-/// The value of a metric of the same cell.
-fn beside(rows: &[&Row], row: &Row, metric: &str) -> Option<f64> {
-    rows.iter().find(|other| other.cell == row.cell && other.metric == metric)?.value
 }
 
 fn rates<'a>(rows: &[&'a Row]) -> Lines<'a> {

@@ -22,7 +22,7 @@ mod tests;
 mod vibrations;
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Robot, Study};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Study};
 use featherbench_continua::{Basis, Element, Fit, Hinges, Rod, Strain};
 use featherbench_results::Row;
 use featherbench_study::known::{Case, KnownAnswers, Number, count, error, failed, largest, told};
@@ -82,10 +82,6 @@ impl Study for Continuum {
 
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
         if cell.quantity == beams::QUANTITY { beams::evaluate(context, cell).into() } else { self.known.evaluate(context, cell) }
-    }
-
-    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
-        Vec::new()
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

@@ -7,7 +7,7 @@ use featherbench_bench::OWN;
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo, Verdict};
-use featherbench_study::known::{passed, table};
+use featherbench_study::known::{beside, passed, table};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 
@@ -84,11 +84,6 @@ fn figures<'a>(rows: &[&'a Row]) -> Figures<'a> {
 /// The number of elements of a row's rod.
 fn elements(row: &Row) -> Option<f64> {
     serde_json::from_str::<serde_json::Value>(&row.params).ok()?["elements"].as_f64()
-}
-
-/// The value of a metric of the same cell.
-fn beside(rows: &[&Row], row: &Row, metric: &str) -> Option<f64> {
-    rows.iter().find(|other| other.cell == row.cell && other.metric == metric)?.value
 }
 
 /// The name of an element, with the engine if it is not ours.

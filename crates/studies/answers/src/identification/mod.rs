@@ -16,7 +16,7 @@ mod tests;
 mod witness;
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Finished, NoSettings, Outcome, Robot, Study};
+use featherbench_bench::{Cell, Context, Finished, NoSettings, Outcome, Study};
 use featherbench_results::Row;
 use featherbench_study::known::{Case, KnownAnswers, Number, count, error, failed, largest, told};
 use featherbench_study::{Entry, Made, Setup};
@@ -68,10 +68,6 @@ impl Study for Identification {
 
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
         if witness::is_of(cell) { witness::evaluate(context, cell).into() } else { self.known.evaluate(context, cell) }
-    }
-
-    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
-        Vec::new()
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

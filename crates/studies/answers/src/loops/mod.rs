@@ -29,7 +29,7 @@ mod tests;
 pub(crate) mod words;
 
 use ask::{Asked, Truths};
-use featherbench_bench::{Cell, Context, Engine, Finished, NoAnswer, OWN, Outcome, Robot, Study, hash};
+use featherbench_bench::{Cell, Context, Engine, Finished, NoAnswer, OWN, Outcome, Study, hash};
 use featherbench_results::{Row, canonical_json};
 use featherbench_study::{Entry, Made, Setup};
 use serde::Deserialize;
@@ -138,10 +138,6 @@ impl Study for Loops {
             Ok(answer) => Outcome::Text(answer),
             Err(no_answer) => Outcome::NoAnswer(no_answer),
         }
-    }
-
-    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
-        Vec::new()
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

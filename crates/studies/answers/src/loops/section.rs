@@ -8,6 +8,7 @@ use featherbench_bench::OWN;
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, labels, opener};
 use featherbench_results::{Row, RunInfo, Verdict};
+use featherbench_study::known::beside;
 use featherbench_study::known::passed;
 use maud::{Markup, html};
 use serde_json::Value;
@@ -56,11 +57,6 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
 
 fn params(row: &Row) -> Option<Value> {
     serde_json::from_str(&row.params).ok()
-}
-
-/// The value of another metric of the same cell.
-fn beside(rows: &[&Row], row: &Row, metric: &str) -> Option<f64> {
-    rows.iter().find(|other| other.cell == row.cell && other.metric == metric)?.value
 }
 
 fn points<'a>(rows: &[&'a Row]) -> Vec<Point<'a>> {

@@ -10,7 +10,7 @@
 pub(crate) mod words;
 
 use crate::contact::standing::Stand;
-use featherbench_bench::{Cell, ContactProblems, Context, Finished, NoAnswer, Outcome, Robot, Study, hash};
+use featherbench_bench::{Cell, ContactProblems, Context, Finished, NoAnswer, OWN, Outcome, Study, hash};
 use featherbench_contact::{Convex, Friction, Problem, Solver, library};
 use featherbench_results::{Row, Verdict, canonical_json};
 use featherbench_study::known::{failed, largest};
@@ -167,10 +167,6 @@ impl Study for Relaxation {
         compared(context, cell).into()
     }
 
-    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
-        Vec::new()
-    }
-
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
         finished.iter().flat_map(|(cell, outcome)| rows(context, cell, outcome)).collect()
     }
@@ -189,7 +185,7 @@ fn rows(context: &Context, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
         quantity: QUANTITY.into(),
         metric: "difference".into(),
         unit: "1".into(),
-        reference: "featherbench".into(),
+        reference: OWN.into(),
         ..Row::default()
     };
     match outcome.answer() {

@@ -9,7 +9,7 @@
 
 use super::STUDY;
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, Quantity, Robot, WithResidual};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, OWN, Quantity, Robot, WithResidual};
 use featherbench_dynamics::inverse_dynamics;
 use featherbench_formats::neutral;
 use featherbench_residuals::{Described, Payload, Residual, SmoothCoulomb, State, Sum, Viscous, Zero};
@@ -121,7 +121,7 @@ pub(super) fn rows(context: &Context, robot: &Robot, finished: &[Finished]) -> V
             Ok(errors) => {
                 let inverse = cell.quantity == Quantity::InverseDynamics.name();
                 let metric = if inverse { "corrected_scaled" } else { "corrected_backward" };
-                let row = Row { metric: metric.into(), reference: "featherbench".into(), ..blank };
+                let row = Row { metric: metric.into(), reference: OWN.into(), ..blank };
                 context.gates.judge(row, errors.iter().copied().fold(0.0, worst), 1.0)
             }
             Err(no_answer) => {

@@ -4,12 +4,12 @@
 //! s = √(v₀² + 2 g z₀),  t₁ = (v₀ + s)/g,  τ = T − t₁      z = s τ − ½ g τ²,  ż = s − g τ
 //! ```
 //!
-//! An engine's ground is a spring of stiffness k. Its own derivative is off by −(∂ż/∂x₀) π √(m/k) in z (METHODOLOGY, "Contact"): the row
+//! An engine's ground is a spring of stiffness k. Its own derivative is off by −(∂ż/∂x₀) π √(m/k) in z (`guide/studies/scenes.md`, "Derivative of a bounce"): the row
 //! `spring_share` says how much of the error that is. What is left comes from steps that do not meet the instant of the impact.
 
 use super::rows::{blank, without_answer};
 use super::{BOUNCE, cell, of_engine};
-use featherbench_bench::{Cell, Context, Gates, NoAnswer, Outcome};
+use featherbench_bench::{Cell, Context, Gates, NoAnswer, OWN, Outcome};
 use featherbench_hybrid::library::BouncingBall;
 use featherbench_hybrid::{Settings, Start, sensitivity, simulate};
 use featherbench_results::{Row, Verdict};
@@ -45,7 +45,7 @@ pub(super) fn plan(context: &Context) -> Vec<Cell> {
     let mut cells = Vec::new();
     for engine in context.engines {
         let identity = engine.identity();
-        if identity.name == "featherbench" {
+        if identity.name == OWN {
             cells.push(cell("elastic_bounce", of_engine(identity), "saltation", BOUNCE, json!({"height": HEIGHT, "duration": DURATION})));
         }
         let variants = engine.scene_engine().map(|scenes| scenes.derivative_variants()).unwrap_or_default();
@@ -59,7 +59,7 @@ pub(super) fn plan(context: &Context) -> Vec<Cell> {
 
 /// Six numbers of each case: z, ż, and the derivative row by row.
 pub(super) fn evaluate(context: &Context, cell: &Cell) -> Result<Vec<f64>, NoAnswer> {
-    if cell.engine == "featherbench" {
+    if cell.engine == OWN {
         return own();
     }
     let engine = context.engine(&cell.engine).and_then(|engine| engine.scene_engine());
@@ -89,7 +89,7 @@ fn own() -> Result<Vec<f64>, NoAnswer> {
 
 /// Of each case: the derivative's entries by z₀, its error, how much of that is the spring's, and the state's error.
 pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
-    let own = cell.engine == "featherbench";
+    let own = cell.engine == OWN;
     let values = match outcome.answer() {
         Ok(values) => values,
         Err(no_answer) => return vec![without_answer(blank(cell, &cell.params), no_answer)],

@@ -19,7 +19,7 @@ pub(crate) mod section;
 mod tests;
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Finished, Identity, NoAnswer, Outcome, Robot, Study, hash};
+use featherbench_bench::{Cell, Context, Finished, Identity, NoAnswer, Outcome, Study, hash};
 use featherbench_results::{Row, canonical_json};
 use featherbench_scenes::{Question, library};
 use featherbench_study::{Entry, Made, Setup};
@@ -136,10 +136,6 @@ impl Study for Scenes {
             Ok(question.measures.iter().map(|measure| measure.of(&motion)).collect::<Vec<_>>())
         });
         values.collect::<Result<Vec<_>, NoAnswer>>().map(|values| values.concat()).into()
-    }
-
-    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
-        Vec::new()
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

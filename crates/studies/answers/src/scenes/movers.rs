@@ -1,6 +1,6 @@
 //! Who moves a scene.
 
-use featherbench_bench::{ContactProblems, ContactSolver, Engine, NoAnswer};
+use featherbench_bench::{ContactProblems, ContactSolver, Engine, NoAnswer, OWN};
 use featherbench_scenes::{Motion, OwnSolver, Question, StepProblem, StepSolver, Variant, simulate};
 use nalgebra::DVector;
 
@@ -62,7 +62,7 @@ impl Mover {
 pub(super) fn of(engine: &dyn Engine) -> Vec<(Mover, Variant)> {
     let rigid = [("contact", "rigid, round cone"), ("integrator", "semi-implicit Euler, ours")];
     let mut found = Vec::new();
-    if engine.identity().name == "featherbench" {
+    if engine.identity().name == OWN {
         found.extend(["newton", "block_gauss_seidel"].map(|name| (Mover::Own, Variant::new(name, &rigid))));
     }
     if let Some(scenes) = engine.scene_engine() {

@@ -1,7 +1,7 @@
 //! Rows of a scene by a variant.
 
 use super::MOTION;
-use featherbench_bench::{Cell, Gates, NoAnswer, Outcome};
+use featherbench_bench::{Cell, Gates, NoAnswer, OWN, Outcome};
 use featherbench_results::{Row, Verdict, canonical_json};
 use featherbench_scenes::{Fit, Measure, Question, SoftContact, block_step_felt};
 use serde_json::{Value, json};
@@ -41,7 +41,7 @@ pub(super) fn of_absent(cell: &Cell, outcome: &Outcome) -> Vec<Row> {
 
 /// Whether a row is of a method of ours whose errors are judged: all but sweeps, which may end at their cap.
 fn is_reference(row: &Row) -> bool {
-    row.engine == "featherbench" && row.method != "block_gauss_seidel"
+    row.engine == OWN && row.method != "block_gauss_seidel"
 }
 
 /// Of each measure its value and error at each step, the bias at dt → 0, and a law's error where one is known.

@@ -4,6 +4,7 @@ mod drawings;
 
 use super::drawing::drawing;
 use super::{BOUNCE, STUDY};
+use featherbench_bench::OWN;
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, opener};
 use featherbench_results::{Row, RunInfo, Verdict};
@@ -165,7 +166,7 @@ fn body(rows: &[&Row], figures: &Figures, questions: &Markup, chunk: &str) -> Ma
     let heavy = largest(finest(rows, "load_error", "error").filter(|row| row.family == "stack_1000"), 3, 1e-2);
     let created = largest(finest(rows, "energy_created", "error"), 3, 1e-6);
     let drifting = largest(finest(rows, "drift", "error").filter(|row| row.family.starts_with("standing")), 3, 1e-4);
-    let derivative = rows.iter().filter(|row| row.quantity == BOUNCE && row.metric == "derivative_error" && row.engine != "featherbench");
+    let derivative = rows.iter().filter(|row| row.quantity == BOUNCE && row.metric == "derivative_error" && row.engine != OWN);
     let (nearest, farthest) = ends(derivative.copied());
     html! {
         section #scenes {

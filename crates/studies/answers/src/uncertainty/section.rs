@@ -7,7 +7,7 @@ use super::rates::SIZES;
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
-use featherbench_study::known::{passed, table};
+use featherbench_study::known::{beside, passed, table};
 use maud::{Markup, html};
 
 /// A kind of points: its name, its slope, and (samples, error of the mean).
@@ -51,11 +51,6 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
 fn value(rows: &[&Row], quantity: &str, family: &str, method: &str, metric: &str) -> Option<f64> {
     let of = |row: &&&Row| row.quantity == quantity && row.family == family && row.method == method && row.metric == metric;
     rows.iter().find(of)?.value
-}
-
-/// The value of a metric of the same cell.
-fn beside(rows: &[&Row], row: &Row, metric: &str) -> Option<f64> {
-    rows.iter().find(|other| other.cell == row.cell && other.metric == metric)?.value
 }
 
 fn rates<'a>(rows: &[&'a Row]) -> Vec<Rate<'a>> {

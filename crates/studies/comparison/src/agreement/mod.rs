@@ -8,7 +8,7 @@ pub(crate) mod section;
 pub(crate) mod words;
 
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
-use featherbench_bench::{Cell, Context, DENSE_LIMIT, Engine, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Cell, Context, DENSE_LIMIT, Engine, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::Rnea;
 use featherbench_model::Model;
 use featherbench_results::{Row, Verdict};
@@ -18,7 +18,7 @@ use over_best::over_best;
 use serde_json::json;
 
 /// The engine that all others are compared with.
-const REFERENCE: &str = "featherbench";
+const REFERENCE: &str = OWN;
 
 /// The quantities that every engine is asked for.
 pub(crate) const QUANTITIES: [Quantity; 15] = [

@@ -11,7 +11,7 @@ pub(crate) mod section;
 pub(crate) mod words;
 
 use featherbench_bench::truth::conditioning_bound;
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::mass_matrix;
 use featherbench_results::{Row, Verdict};
 use featherbench_study::{Entry, Made, Setup, row};
@@ -42,7 +42,7 @@ impl Study for Conditioning {
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
-        let Some(featherbench) = context.engine("featherbench") else { return Vec::new() };
+        let Some(featherbench) = context.engine(OWN) else { return Vec::new() };
         let robots = context.robots.iter().filter(|robot| robot.takes(self.name()) && robot.states.nv <= MOST_DOFS);
         let cell = |robot: &Robot| {
             let (method, params) = if floating_base::takes(robot) {

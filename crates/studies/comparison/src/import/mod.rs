@@ -32,7 +32,7 @@ pub use replay::Effect;
 pub use subtree::{SubTree, bound};
 
 use featherbench_bench::{
-    Cell, Context, Engine, FileFormat, Finished, Import as Read, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study,
+    Cell, Context, Engine, FileFormat, Finished, Import as Read, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study,
 };
 use featherbench_results::Row;
 use featherbench_study::{Entry, Made, Setup};
@@ -73,7 +73,7 @@ impl Study for Import {
         for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
             let Some(params) = params(robot) else { continue };
             // Our own import is the robot itself.
-            for engine in context.engines.iter().filter(|engine| engine.identity().name != "featherbench") {
+            for engine in context.engines.iter().filter(|engine| engine.identity().name != OWN) {
                 let cell =
                     |quantity: &str, method: String| Cell::new(self.name(), robot, engine.identity(), quantity, method, params.clone());
                 cells.push(cell(READING, PARSER.into()));
@@ -111,7 +111,7 @@ fn params(robot: &Robot) -> Option<Value> {
 /// The engine whose import is the reference of a file.
 fn reference(format: FileFormat) -> &'static str {
     match format {
-        FileFormat::Urdf => "featherbench",
+        FileFormat::Urdf => OWN,
         FileFormat::Mjcf => "mujoco",
     }
 }

@@ -4,7 +4,7 @@ use super::replay::{Answers, Reference, Replay, carried, replay};
 use super::subtree::{SubTree, unexplained};
 use super::{Class, Comparison, Effect, Finding, LARGEST, READING, Weight, armature, as_read, bound, reference};
 use featherbench_bench::measure::worst;
-use featherbench_bench::{Cell, Context, FileFormat, Finished, Import, ImportNote, NoAnswer, Outcome, Quantity, Robot};
+use featherbench_bench::{Cell, Context, FileFormat, Finished, Import, ImportNote, NoAnswer, OWN, Outcome, Quantity, Robot};
 use featherbench_results::{Row, Verdict, canonical_json};
 use featherbench_study::row;
 use serde_json::{Value, json};
@@ -60,7 +60,7 @@ struct OfEngine<'a> {
 
 impl OfEngine<'_> {
     fn reference(&self) -> &'static str {
-        self.robot.file.as_ref().map_or("featherbench", |file| reference(file.format))
+        self.robot.file.as_ref().map_or(OWN, |file| reference(file.format))
     }
 
     fn row(&self, cell: &Cell, metric: &str) -> Row {

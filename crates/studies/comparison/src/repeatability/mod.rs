@@ -164,10 +164,6 @@ impl Study for Repeatability {
         Outcome::NoAnswer(NoAnswer::NotOffered("there is no robot about which it answers".into()))
     }
 
-    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
-        Vec::new()
-    }
-
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
         finished.iter().filter_map(|(cell, outcome)| self.judged(context, cell, outcome)).collect()
     }

@@ -7,7 +7,7 @@
 pub(crate) mod section;
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, Outcome, Reproduction, Robot, SEEDS, SLACK, Study};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, Outcome, Reproduction, SEEDS, SLACK, Study};
 use featherbench_results::{Relation, Row, Verdict};
 use featherbench_study::{Entry, Made, Setup};
 use serde_json::json;
@@ -59,10 +59,6 @@ impl Study for Reproductions {
 
     fn evaluate(&self, _: &Context, cell: &Cell) -> Outcome {
         (self.reproduce)(&cell.robot, SEEDS).into()
-    }
-
-    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
-        Vec::new()
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

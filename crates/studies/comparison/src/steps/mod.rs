@@ -17,7 +17,7 @@ pub(crate) mod section;
 pub(crate) mod words;
 
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Stepper, Study};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Stepper, Study};
 use featherbench_dynamics::{energy, forward_dynamics};
 use featherbench_results::{Row, Verdict};
 use featherbench_robots::Case;
@@ -87,7 +87,7 @@ impl Study for Steps {
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
         let mut rows = Vec::new();
         for (cell, outcome) in finished {
-            let blank = Row { unit: "1".into(), reference: "featherbench".into(), ..row(cell, robot) };
+            let blank = Row { unit: "1".into(), reference: OWN.into(), ..row(cell, robot) };
             let values = match outcome.answer() {
                 Ok(values) => values,
                 Err(no_answer) => {

@@ -2,7 +2,7 @@
 
 use super::{CAP, TARGET};
 use featherbench_answers::contact::standing::{FRICTION, Stand};
-use featherbench_bench::{Cell, ContactProblems, ContactSolver, ContactSteps, Context, Evaluation, NoAnswer};
+use featherbench_bench::{Cell, ContactProblems, ContactSolver, ContactSteps, Context, Evaluation, NoAnswer, OWN};
 use featherbench_contact::solver::Blocks;
 use featherbench_contact::{BlockGaussSeidel, Newton, Problem, Residuals, Solver};
 use featherbench_spatial::smaller;
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use std::ops::Range;
 
 /// Our methods, the reference first.
-pub(super) const OWN: [&str; 3] = ["block_gauss_seidel", WHOLE, "newton"];
+pub(super) const SOLVERS: [&str; 3] = ["block_gauss_seidel", WHOLE, "newton"];
 /// The cap on iterations of an engine with a model of its own: engines make some ten or a hundred in a step.
 const CAP_OF_STEPS: usize = 2_000;
 /// The one that begins with M and J.
@@ -154,7 +154,7 @@ impl Candidate {
 
     /// Makes it ready at a tolerance.
     pub fn prepare<'a>(&self, context: &'a Context<'_>, landed: &'a Landed, tolerance: f64) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
-        if self.engine != "featherbench" {
+        if self.engine != OWN {
             let lost = || NoAnswer::Failed(format!("{} solves no contact problems", self.engine));
             let solver = context.engine(&self.engine).and_then(|engine| engine.contact_solver()).ok_or_else(lost)?;
             return match self.own_model {
@@ -201,7 +201,7 @@ impl Candidate {
     /// The impulses of all problems at a tolerance, N·s; NaN where there is no answer.
     fn impulses(&self, context: &Context, landed: &Landed, tolerance: f64) -> Result<Vec<DVector<f64>>, NoAnswer> {
         let rows = 3 * landed.given.contacts;
-        if self.engine == "featherbench" {
+        if self.engine == OWN {
             let sweeps = BlockGaussSeidel { tolerance, sweeps: CAP };
             let newton = Newton { tolerance, ..Newton::default() };
             let solver: &dyn Solver = if self.method == "newton" { &newton } else { &sweeps };

@@ -23,9 +23,9 @@ pub(crate) mod section;
 use crate::timing::machine::Pinned;
 use crate::timing::protocol::{Budget, Ready, experiment};
 use crate::timing::samples::Samples;
-use candidates::{Candidate, Landed, OWN, Told};
+use candidates::{Candidate, Landed, SOLVERS, Told};
 use featherbench_answers::contact::standing::Stand;
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Robot, Study, hash};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, OWN, Outcome, Study, hash};
 use featherbench_results::{Row, canonical_json};
 use featherbench_robots::Random;
 use featherbench_study::{Entry, Made, Setup};
@@ -71,18 +71,18 @@ const CAP: usize = 20_000;
 impl ContactTiming {
     /// Our methods, the first twice, and those of the engines.
     fn candidates(&self, context: &Context, stand: Stand) -> Vec<Candidate> {
-        let own = OWN
+        let own = SOLVERS
             .iter()
             .filter(|method| **method != "newton" || stand.contacts() <= MOST_OF_NEWTON)
-            .map(|method| Candidate::new("featherbench", method, false));
-        let control = Candidate::new("featherbench", OWN[0], true);
+            .map(|method| Candidate::new(OWN, method, false));
+        let control = Candidate::new(OWN, SOLVERS[0], true);
         let engines = self.settings.engines.iter().filter_map(|name| Some((name, context.engine(name)?.contact_solver()?)));
         let others = engines.flat_map(|(name, solver)| Candidate::all_of(name, solver));
         own.chain([control]).chain(others).collect()
     }
 
     fn cell(&self, context: &Context, stand: Stand) -> Option<Cell> {
-        let identity = context.engine("featherbench")?.identity();
+        let identity = context.engine(OWN)?.identity();
         let candidates: Vec<_> = self.candidates(context, stand).iter().map(|candidate| candidate.to_params(context)).collect();
         let params = json!({"contacts": stand.contacts(), "rank": stand.rank(), "seconds": self.settings.seconds, "seed": context.seed, "target": TARGET, "candidates": candidates});
         Some(Cell {
@@ -92,7 +92,7 @@ impl ContactTiming {
             params,
             engine: identity.name.clone(),
             version: identity.version.clone(),
-            method: OWN[0].into(),
+            method: SOLVERS[0].into(),
             quantity: QUANTITY.into(),
             scalar: "f64".into(),
         })
@@ -161,10 +161,6 @@ impl Study for ContactTiming {
 
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
         self.measured(context, cell).into()
-    }
-
-    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
-        Vec::new()
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

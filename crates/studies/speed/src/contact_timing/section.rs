@@ -1,6 +1,7 @@
 //! Section: how long solvers take for the contacts of standing robots.
 
 use super::{STUDY, TARGET};
+use featherbench_bench::OWN;
 use featherbench_report::figure::{Axis, Point};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, labels, opener};
@@ -62,7 +63,7 @@ fn times<'a>(rows: &[&'a Row]) -> Vec<Time<'a>> {
 /// Of each robot the best other engine's time over that of our sweeps.
 fn best_others<'a>(times: &'a [Time]) -> Vec<(&'a str, &'a Time<'a>)> {
     let mut best: Vec<(&str, &Time)> = Vec::new();
-    for time in times.iter().filter(|time| time.engine != "featherbench" && time.valid && time.ratio.is_some()) {
+    for time in times.iter().filter(|time| time.engine != OWN && time.valid && time.ratio.is_some()) {
         match best.iter_mut().find(|(robot, _)| *robot == time.robot) {
             Some((_, known)) if known.ns <= time.ns => {}
             Some((_, known)) => *known = time,

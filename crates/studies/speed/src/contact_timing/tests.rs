@@ -17,7 +17,7 @@ fn cell(candidates: &[(&str, &str, bool)]) -> Cell {
         params: json!({"contacts": 4, "rank": 12, "seconds": 1.0, "candidates": listed.collect::<Vec<_>>()}),
         engine: "featherbench".into(),
         version: "1".into(),
-        method: OWN[0].into(),
+        method: SOLVERS[0].into(),
         quantity: QUANTITY.into(),
         scalar: "f64".into(),
     }
@@ -88,8 +88,12 @@ fn an_answer_that_is_not_good_enough_has_no_time() {
 /// An engine that answers by a model of its own is told apart: its residual informs, and its ratio has another name and reference.
 #[test]
 fn an_own_model_is_told_apart() {
-    let four =
-        [("featherbench", OWN[0], false), ("featherbench", OWN[1], false), ("featherbench", OWN[0], true), ("peer", "soft_newton", false)];
+    let four = [
+        ("featherbench", SOLVERS[0], false),
+        ("featherbench", SOLVERS[1], false),
+        ("featherbench", SOLVERS[0], true),
+        ("peer", "soft_newton", false),
+    ];
     let mut cell = cell(&four);
     cell.params["candidates"][3]["own_model"] = json!({"model": "soft", "limit": "soft_newton", "time": "all"});
     let mut told = GOOD;
@@ -137,7 +141,7 @@ fn our_methods_reach_the_target() {
     let context = Context { robots: &[], engines: &[], gates: &gates, seed: 1 };
     let landed = Landed::of(Stand::Quadruped(1), 1).unwrap();
     assert!(landed.problems.len() >= 10, "{}", landed.problems.len());
-    for method in OWN {
+    for method in SOLVERS {
         let candidate = Candidate::new("featherbench", method, false);
         let Told { tolerance, residual, .. } = candidate.at_target(&context, &landed).unwrap();
         assert!(residual <= TARGET && tolerance >= 1e-10, "{method}: {tolerance:e} {residual:e}");

@@ -31,7 +31,7 @@ pub(crate) mod words;
 
 use crate::scaling::{relative_error, truth};
 use featherbench_bench::alone::{self, Ask, Measured, Question};
-use featherbench_bench::{Cell, Context, Engine, Finished, Limits, NoAnswer, OWN, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Cell, Context, Engine, Finished, Limits, NoAnswer, OWN, Outcome, Quantity, Study};
 use featherbench_results::Row;
 use featherbench_study::{Entry, Made, Setup, no_section};
 use line::{Grown, Point, Stop};
@@ -297,10 +297,6 @@ impl Study for Growth {
     }
 
     /// All rows come from [`Study::compare_all`]: no tree is a robot of the suite.
-    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
-        Vec::new()
-    }
-
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
         rows::rows(context, finished)
     }

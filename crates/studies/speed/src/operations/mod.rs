@@ -10,7 +10,7 @@
 
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::{Crba, Ltdl, TreeSparse};
 use featherbench_model::Description;
 use featherbench_results::{Relation, Row, Verdict};
@@ -57,7 +57,7 @@ impl Study for OperationCounts {
             for engine in context.engines {
                 let identity = engine.identity();
                 let method = match engine.methods(Quantity::StoredEntries).into_iter().next() {
-                    Some(_) if identity.name == "featherbench" => "ltdl".to_owned(),
+                    Some(_) if identity.name == OWN => "ltdl".to_owned(),
                     Some(method) => method,
                     None => continue,
                 };
@@ -71,7 +71,7 @@ impl Study for OperationCounts {
         let (Some(robot), Some(engine)) = (context.robot(&cell.robot), context.engine(&cell.engine)) else {
             return Outcome::NoAnswer(NoAnswer::Failed("there is no robot or engine of this cell".into()));
         };
-        if cell.engine == "featherbench" {
+        if cell.engine == OWN {
             return counts(robot).map_err(NoAnswer::Failed).into();
         }
         let stored = engine.prepare(robot, Quantity::StoredEntries, &cell.method, &robot.states).and_then(|mut prepared| {

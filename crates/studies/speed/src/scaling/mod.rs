@@ -163,10 +163,6 @@ impl Study for Scaling {
     }
 
     /// All rows come from [`Study::compare_all`]: most trees are no robots of the suite.
-    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
-        Vec::new()
-    }
-
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
         rows::rows(context, &self.settings.lines, finished)
     }

@@ -3,7 +3,7 @@
 //!
 //! A time includes everything from raw q, v, a or τ to the result: sine and cosine, gravity, armature and full inertias. `factorization`
 //! and `solve` start from a mass matrix or factors made before. Converting coordinates and reading results are outside the clock for all
-//! candidates. METHODOLOGY.md describes the protocol, the statistics and the meaning of each number.
+//! candidates. `guide/studies/timing.md` describes the protocol, the statistics and the meaning of each number.
 //!
 //! There are four kinds of cells:
 //! - the *machine*: its peak, its clock, an empty call;
@@ -24,7 +24,7 @@ pub(crate) mod samples;
 pub(crate) mod section;
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Engine, Finished, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Cell, Context, Engine, Finished, HarnessError, NoAnswer, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_results::Row;
 use featherbench_robots::{Random, StateBatch};
 use featherbench_study::{Entry, Made, Setup};
@@ -97,7 +97,7 @@ fn of_suite(setup: &Setup) -> Made {
 const SAMPLES_NAME: &str = "timing.jsonl";
 
 /// Our own kernels, with which all candidates are compared.
-const REFERENCE: &str = "featherbench";
+const REFERENCE: &str = OWN;
 /// The metric of the time of the fastest method of some engines over that of one of ours.
 const BEST_OTHER: &str = "best_other";
 /// The kinds of cells, as their parameter `what`.

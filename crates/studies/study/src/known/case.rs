@@ -1,6 +1,6 @@
 //! A case: a question with a known answer, and how its numbers are judged.
 
-use featherbench_bench::{Cell, Context, NoAnswer, Outcome, hash};
+use featherbench_bench::{Cell, Context, NoAnswer, OWN, Outcome, hash};
 use featherbench_results::{Relation, Row, Verdict, canonical_json};
 use serde_json::{Value, json};
 
@@ -69,7 +69,7 @@ pub fn failed(error: impl std::fmt::Display) -> NoAnswer {
 
 impl Case {
     pub(super) fn cell(&self, study: &str, context: &Context) -> Option<Cell> {
-        let identity = context.engine("featherbench")?.identity();
+        let identity = context.engine(OWN)?.identity();
         let params = json!({"case": self.params, "seed": context.seed});
         Some(Cell {
             study: study.into(),

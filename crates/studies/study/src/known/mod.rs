@@ -10,9 +10,9 @@ mod table;
 
 pub use case::{Case, Evaluate, Judged, Number, count, error, failed, told};
 pub use featherbench_spatial::{larger, largest};
-pub use table::{passed, table};
+pub use table::{beside, passed, table};
 
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Robot, Study};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Study};
 use featherbench_results::Row;
 
 /// A study of cases with known answers.
@@ -47,10 +47,6 @@ impl Study for KnownAnswers {
             Some(case) => (case.evaluate)(context.seed).into(),
             None => Outcome::NoAnswer(NoAnswer::Failed("there is no case of this cell".into())),
         }
-    }
-
-    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
-        Vec::new()
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

@@ -72,3 +72,8 @@ fn row(study: &str, line: &Line, chunk: &str) -> Markup {
         }
     }
 }
+
+/// The value of another metric of a row's cell.
+pub fn beside(rows: &[&Row], row: &Row, metric: &str) -> Option<f64> {
+    rows.iter().find(|other| other.cell == row.cell && other.metric == metric)?.value
+}

@@ -1,5 +1,6 @@
 //! Who agrees with whom on what, in sentences.
 
+use featherbench_bench::OWN;
 use std::collections::{BTreeMap, BTreeSet};
 
 use featherbench_report::numbers::{count, larger, listed, short};
@@ -131,7 +132,7 @@ pub fn markup(who: &WhoAgrees) -> Markup {
             }
             p.note { "In parentheses the largest error, in each quantity's own measure." }
         }
-        @if who.references.contains("featherbench") {
+        @if who.references.contains(OWN) {
             p.note {
                 "The reference here is our own f64 code, and not the truth: agreement shows that independent programs compute the same, "
                 "disagreement does not show who is wrong. See " a href="#pairs" { "every engine against every other" } "."

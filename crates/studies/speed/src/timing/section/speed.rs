@@ -84,7 +84,7 @@ fn estimates(overview: &Overview, speed: &Speed) -> Markup {
         @if !engines.is_empty() {
             p.note #speed-estimates {
                 "≈ and crosses: estimates. " (engines.join(" and ")) " are called through Python; what calling takes is measured by the same calls on a robot without bodies, and subtracted. "
-                "Where that was held against the engines' own libraries, estimates were too long, never too short (METHODOLOGY.md, \"Timing\", says by how much): an engine is rather faster than its estimate says. "
+                "Where that was held against the engines' own libraries, estimates were too long, never too short (guide/studies/timing.md, \"Limits\", says by how much): an engine is rather faster than its estimate says. "
                 "Rows " code { "overhead_ns" } " hold what was subtracted from each call."
             }
         }
