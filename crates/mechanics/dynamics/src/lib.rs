@@ -61,7 +61,6 @@ pub mod integrate;
 mod jacobian;
 mod kinematics;
 mod ltdl;
-mod ltl;
 mod momentum;
 mod packed;
 mod parallel;
@@ -78,10 +77,9 @@ pub use bias::{Bias, bias_force};
 pub use center_of_mass::{CenterOfMass, MassCenter, center_of_mass};
 pub use crba::{Crba, ParallelCrba, mass_matrix};
 pub use derivatives::{
-    Coriolis, EnergyGradient, EnergyPartials, FdDerivatives, FdHessian, FdPartials, FdSecondPartials, IdDerivatives, IdHessian, IdPartials,
-    IdSecondPartials, JacobianRate, MassGradient, MomentumMatrix, PARAMETERS, ParameterSensitivity, Regressor, RegressorMatrix, TreePair,
-    coriolis_matrix, energy_gradient, fd_derivatives, fd_hessian, id_derivatives, id_hessian, inertial_parameters, jacobian_rate,
-    mass_gradient, mass_matrix_rate, momentum_matrix, torque_regressor,
+    Coriolis, FdDerivatives, FdHessian, FdPartials, FdSecondPartials, IdDerivatives, IdHessian, IdPartials, IdSecondPartials, JacobianRate,
+    MomentumMatrix, PARAMETERS, ParameterSensitivity, Regressor, RegressorMatrix, TreePair, coriolis_matrix, fd_derivatives, fd_hessian,
+    id_derivatives, id_hessian, inertial_parameters, jacobian_rate, mass_matrix_rate, momentum_matrix, torque_regressor,
 };
 pub use energy::{Energies, Energy, energy};
 pub use error::{DimensionError, Error, NotPositiveDefinite};
@@ -94,7 +92,6 @@ pub use instances::instances_of_tests;
 pub use jacobian::{Jacobian, jacobian};
 pub use kinematics::{BodyMotion, Kinematics, forward_kinematics};
 pub use ltdl::{Ltdl, ParallelLtdl};
-pub use ltl::Ltl;
 pub use momentum::{CentroidalMomentum, Momentum, centroidal_momentum};
 pub use packed::{PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum, PackedRnea};
 pub use parallel::Division;

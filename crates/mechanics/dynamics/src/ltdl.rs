@@ -11,8 +11,7 @@
 //! | inverse | n | Σ (d_k − 1)·k + D1 | O(Σ d_k·n) |
 //! | selected inverse | n | 2·D2 | O(Σ d_k²) |
 //!
-//! What else can be done with the factors has its own file: `ltdl/half.rs` (half-solutions, products, square root, determinant),
-//! `ltdl/columns.rs` (columns of the inverse) and `ltdl/update.rs` (`M ± σ w wᵀ`).
+//! What else can be done with the factors is in `ltdl/half.rs`: half-solutions, products, square root, determinant.
 //!
 //! This file has the plain text, for any scalar: duals, extended precision, counted operations. Two blocked texts stand beside it, and the
 //! tests compare each with it:
@@ -43,7 +42,6 @@ use wide::{f32x8, f32x16, f64x4, f64x8};
 
 mod blocks;
 mod bushy;
-mod columns;
 mod factor;
 mod half;
 mod inverse;
@@ -51,7 +49,6 @@ mod lanes;
 mod parallel;
 mod registers;
 mod solve;
-mod update;
 
 pub use parallel::ParallelLtdl;
 
@@ -70,8 +67,6 @@ pub struct Ltdl<T> {
     scratch: Vec<T>,
     /// What the selected inverse for `f64` needs: X of one path.
     square: Vec<T>,
-    /// What an update needs: numbers of one path.
-    path: Vec<T>,
 }
 
 impl<T: Real> Ltdl<T> {
@@ -244,7 +239,7 @@ impl<T: Real> Ltdl<T> {
     pub fn from_unfactored(matrix: TreeSparse<T>) -> Self {
         let plan = Plan::new(&matrix);
         let scratch = vec![T::zero(); Blocked::<T>::find().map_or(0, |blocked| (blocked.scratch)(&plan))];
-        Self { matrix, plan, scratch, square: Vec::new(), path: Vec::new() }
+        Self { matrix, plan, scratch, square: Vec::new() }
     }
 }
 

@@ -210,16 +210,6 @@ impl<T: Real> TreeSparse<T> {
         DMatrix::from_fn(self.size(), self.size(), |i, j| self.get(i, j))
     }
 
-    /// Factors the matrix as `LᵀL`; see [`Ltl`](crate::Ltl).
-    ///
-    /// # Errors
-    /// [`NotPositiveDefinite`] when a pivot is not positive.
-    pub fn into_ltl(self) -> Result<crate::Ltl<T>, NotPositiveDefinite> {
-        let mut ltl = crate::Ltl::from_unfactored(self);
-        ltl.factor()?;
-        Ok(ltl)
-    }
-
     /// Factors the matrix as `LᵀDL`; see [`Ltdl`](crate::Ltdl).
     ///
     /// # Errors

@@ -1,12 +1,12 @@
-//! Structure of the derivatives: Coriolis matrix, Christoffel symbols, rates of Jacobians and momentum, gradients of energy and of M.
+//! Structure of the derivatives: Coriolis matrix, Christoffel symbols, rates of Jacobians and momentum.
 //! The truth comes from duals over double-double numbers through the plain algorithms.
 
 use crate::common;
 
 use common::{constant, distance, each_robot_and_state, flow, largest, lifted, over_inertias, robots, unit, within};
 use featherbench_dynamics::{
-    Coriolis, JacobianRate, TreePair, TreeSparse, bias_force, centroidal_momentum, coriolis_matrix, energy, energy_gradient, jacobian,
-    jacobian_rate, mass_gradient, mass_matrix, mass_matrix_rate, momentum_matrix,
+    Coriolis, JacobianRate, TreePair, TreeSparse, bias_force, centroidal_momentum, coriolis_matrix, jacobian, jacobian_rate, mass_matrix,
+    mass_matrix_rate, momentum_matrix,
 };
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement};
 use featherbench_robots::StateBatch;
@@ -128,19 +128,6 @@ fn christoffel_symbols() {
     }
 }
 
-#[test]
-fn gradient_of_the_mass_matrix() {
-    each_robot_and_state(|name, model, [q, _, x, _], _| {
-        let n = x.len();
-        let mut truth = DMatrix::zeros(n, n);
-        for k in 0..n {
-            truth.column_mut(k).copy_from(&(rate_of_mass_matrix(model, q, &unit(n, k)) * DVector::from_column_slice(x)));
-        }
-        let found = mass_gradient(model, q, x).unwrap().to_dense();
-        within(&format!("{name}: ∂(M x)/∂q"), over_inertias(&mass_matrix(model, q).unwrap(), &truth, &found), 5e-14);
-    });
-}
-
 fn six(m: Motion<f64>) -> [f64; 6] {
     m.to_array()
 }
@@ -199,26 +186,6 @@ fn centroidal_momentum_matrix_and_its_rate() {
             within(&format!("{name}: A of {k}"), distance(&columns[k].to_array(), value) / scale(0), 2e-14);
             within(&format!("{name}: Ȧ of {k}"), distance(&rates[k].to_array(), rate) / (scale(1) + scale(0)), 2e-14);
         }
-    });
-}
-
-#[test]
-fn gradients_of_energy() {
-    each_robot_and_state(|name, model, [q, v, ..], _| {
-        let n = v.len();
-        let found = energy_gradient(model, q, v).unwrap();
-        let still = constant(&lifted(v));
-        let by_q: Vec<_> = (0..n).map(|k| energy(model, &moving(model, q, &unit(n, k)), &still).unwrap()).collect();
-        let (kinetic, potential): (Vec<f64>, Vec<f64>) =
-            by_q.iter().map(|energies| (derivative(energies.kinetic), derivative(energies.potential))).unzip();
-        let mut momenta = vec![0.0; n];
-        mass_matrix(model, q).unwrap().mul(v, &mut momenta).unwrap();
-        // Relative to the energy itself where a gradient is zero: on a star no configuration counts.
-        let energies = energy(model, q, v).unwrap();
-        let scale = |truth: &[f64], of: f64| f64::MIN_POSITIVE + largest(truth) + of.abs();
-        within(&format!("{name}: ∂T/∂q"), distance(&found.kinetic_by_q, &kinetic) / scale(&kinetic, energies.kinetic), 1e-14);
-        within(&format!("{name}: ∂T/∂v"), distance(&found.kinetic_by_v, &momenta) / scale(&momenta, 0.0), 1e-14);
-        within(&format!("{name}: ∂V/∂q"), distance(&found.potential_by_q, &potential) / scale(&potential, 0.0), 1e-14);
     });
 }
 

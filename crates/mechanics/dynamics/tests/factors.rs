@@ -7,7 +7,6 @@ use common::dense::{Dense, off};
 use common::{lifted, within};
 use featherbench_dynamics::{DimensionError, Ltdl, TreeSparse};
 use featherbench_model::Topology;
-use featherbench_robots::Random;
 use featherbench_spatial::{Counted, DoubleDouble, Dual, Logarithm, Operations, Real};
 use ltdl::{matrix, plain, sines, topologies};
 use wide::{f32x8, f64x4};
@@ -161,35 +160,6 @@ fn a_determinant_out_of_range_has_a_logarithm() {
     within("star", (found / (2000.0 * 300.0 * std::f64::consts::LN_10) - 1.0).abs(), 2000.0 * f64::EPSILON);
 }
 
-#[test]
-fn selected_columns_are_those_of_the_inverse_and_zero_in_other_trees() {
-    for (name, topology) in topologies() {
-        let n = topology.nv();
-        if n > 130 {
-            continue;
-        }
-        let ltdl = factored::<f64>(&topology);
-        let mut inverse = vec![0.0; n * n];
-        ltdl.inverse(&mut inverse).unwrap();
-        let mut random = Random::new(3, n as u64);
-        // Some twice, in any order.
-        let dofs: Vec<usize> = (0..5).map(|_| random.below(n)).collect();
-        let mut columns = vec![f64::NAN; 5 * n];
-        ltdl.inverse_columns(&dofs, &mut columns).unwrap();
-        let scale = common::largest(&inverse);
-        for (dof, column) in dofs.iter().zip(columns.chunks_exact(n)) {
-            within(&format!("{name}: column {dof}"), common::distance(column, &inverse[dof * n..][..n]) / scale, 16.0 * f64::EPSILON);
-            for (other, x) in column.iter().enumerate() {
-                assert!(topology.row_dofs(other)[0] == topology.row_dofs(*dof)[0] || *x == 0.0, "{name}: {other} is in another tree");
-            }
-        }
-        let mut lanes = vec![f64x4::splat(f64::NAN); n];
-        factored::<f64x4>(&topology).inverse_columns(&dofs[..1], &mut lanes).unwrap();
-        let lane: Vec<f64> = lanes.iter().map(|x| x.to_array()[2]).collect();
-        within(&format!("{name}: lanes"), common::distance(&lane, &columns[..n]) / scale, 16.0 * f64::EPSILON);
-    }
-}
-
 /// The counts of the files' heads. D1 of a tree is the sum of d − 1 over its dofs.
 #[test]
 fn counts() {
@@ -205,13 +175,6 @@ fn counts() {
             let solution = Counted::count(|| solve(&ltdl, &mut x).unwrap());
             assert_eq!(solution, Operations { fused: d1, roots: root, divisions: root, ..Operations::default() }, "{name}: {what}⁻¹ x");
         }
-        let dof = topology.nv() / 2;
-        let depth = topology.dof_depth(dof) as u64;
-        let of_tree = (0..topology.nv()).filter(|&other| topology.row_dofs(other)[0] == topology.row_dofs(dof)[0]);
-        let d1_of_tree: u64 = of_tree.map(|other| topology.dof_depth(other) as u64 - 1).sum();
-        let column = Counted::count(|| ltdl.inverse_columns(&[dof], &mut x).unwrap());
-        let expected = Operations { fused: depth * (depth - 1) / 2 + d1_of_tree, divisions: depth, ..Operations::default() };
-        assert_eq!(column, expected, "{name}: column {dof}");
     }
 }
 
@@ -224,11 +187,4 @@ fn shapes_are_checked() {
             assert_eq!((refused.expected, refused.found), (3, 2), "{name} {what}");
         }
     }
-    let refused = ltdl.inverse_columns(&[0, 3], &mut [0.0; 6]).unwrap_err();
-    assert_eq!((refused.what, refused.expected, refused.found), ("dofs, for the one that was named", 4, 3));
-    let refused = ltdl.inverse_columns(&[usize::MAX], &mut [0.0; 3]).unwrap_err();
-    assert_eq!(refused.expected, usize::MAX);
-    let refused = ltdl.inverse_columns(&[0, 2], &mut [0.0; 5]).unwrap_err();
-    assert_eq!((refused.what, refused.expected, refused.found), ("numbers of the inverse's columns", 6, 5));
-    ltdl.inverse_columns(&[], &mut []).unwrap();
 }

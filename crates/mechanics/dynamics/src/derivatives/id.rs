@@ -83,7 +83,6 @@ impl<T: Real> IdPartials<T> {
 /// |---|---|---|
 /// | derivatives of ID | 100, 176, 299 | 5, 31 |
 /// | [`Coriolis`](crate::Coriolis) | 57, 101, 191 | 2, 13 |
-/// | [`MassGradient`](crate::MassGradient) | 46, 87, 162 | 2, 10 |
 /// | [`IdHessian`](crate::IdHessian) | 229, 341, 599 | 6, 45 |
 /// | [`Regressor::torque`](crate::Regressor::torque) | 75, 152, 335 | 10, 32 |
 ///

@@ -6,13 +6,11 @@
 mod articulated;
 mod columns;
 mod coriolis;
-mod energy_gradient;
 mod fd;
 mod fd_hessian;
 mod id;
 mod id_hessian;
 mod jacobian_rate;
-mod mass_gradient;
 mod momentum_matrix;
 mod parameter_sensitivity;
 mod parameters;
@@ -23,13 +21,11 @@ mod sweep;
 mod tree_pair;
 
 pub use coriolis::{Coriolis, coriolis_matrix, mass_matrix_rate};
-pub use energy_gradient::{EnergyGradient, EnergyPartials, energy_gradient};
 pub use fd::{FdDerivatives, FdPartials, fd_derivatives};
 pub use fd_hessian::{FdHessian, FdSecondPartials, fd_hessian};
 pub use id::{IdDerivatives, IdPartials, id_derivatives};
 pub use id_hessian::{IdHessian, IdSecondPartials, id_hessian};
 pub use jacobian_rate::{JacobianRate, jacobian_rate};
-pub use mass_gradient::{MassGradient, mass_gradient};
 pub use momentum_matrix::{MomentumMatrix, momentum_matrix};
 pub use parameter_sensitivity::ParameterSensitivity;
 pub use parameters::{PARAMETERS, inertial_parameters};

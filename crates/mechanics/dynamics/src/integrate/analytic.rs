@@ -12,12 +12,10 @@
 //! Cost: that of [`FdDerivatives`]. Each of the 2·nv + inputs directions adds the system's forces over duals, a product with M⁻¹, and with
 //! wrenches or parameters one inverse dynamics over duals. A call does not allocate.
 
-use super::IntegrationError;
 use super::by_duals::{Linearisation, Linearise};
 use super::dense::add_scaled;
 use super::directions::{Directions, Input, copy};
 use super::dynamics::{Acceleration, Dynamics, Instant, System};
-use super::lagrangian::{Lagrangian, LagrangianPartials, MomentumAndForce};
 use crate::error::expect;
 use crate::{DimensionError, Error, FdDerivatives, FdPartials, Rnea};
 use featherbench_model::Model;
@@ -50,9 +48,6 @@ pub struct Analytic<S, T> {
     wrenches: Vec<Force<T>>,
     directions: Directions<T>,
     changes: Changes<S, T>,
-    /// What a variational rule needs.
-    dual: Dynamics<S, Dual<T>>,
-    energies: MomentumAndForce<Dual<T>>,
 }
 
 /// How the forces change, and what inverse dynamics takes less or more, while q and v are held.
@@ -96,8 +91,6 @@ where
             partials: FdPartials::new(topology),
             tau: vec![T::zero(); nv],
             wrenches: vec![Force::zero(); bodies],
-            dual: Dynamics::new(model, system.clone(), &directions.parameters)?,
-            energies: MomentumAndForce::new(topology),
             directions,
             changes: Changes {
                 system,
@@ -156,10 +149,6 @@ impl<S: System, T: Angle> Acceleration<T> for Analytic<S, T> {
     fn acceleration(&mut self, t: T, q: &[T], v: &[T], a: &mut [T]) -> Result<(), Error> {
         self.plain.acceleration(t, q, v, a)
     }
-
-    fn lagrangian(&mut self) -> Option<&mut dyn Lagrangian<T>> {
-        self.plain.lagrangian()
-    }
 }
 
 impl<S: System, T: Angle> Linearise<T> for Analytic<S, T> {
@@ -174,14 +163,14 @@ impl<S: System, T: Angle> Linearise<T> for Analytic<S, T> {
     fn set_controls(&mut self, controls: &[T]) -> Result<(), DimensionError> {
         self.plain.set_controls(controls)?;
         copy(&mut self.directions.controls, controls);
-        self.dual.set_controls(&self.directions.controls)
+        Ok(())
     }
 
     fn set_parameters(&mut self, parameters: &[T]) -> Result<(), DimensionError> {
         self.plain.set_parameters(parameters)?;
         copy(&mut self.directions.parameters, parameters);
         self.changes.system.adjust(&self.directions.parameters, &mut self.changes.model);
-        self.dual.set_parameters(&self.directions.parameters)
+        Ok(())
     }
 
     fn linearise(&mut self, t: T, q: &[T], v: &[T], a: &mut [T], result: &mut Linearisation<T>) -> Result<(), Error> {
@@ -214,13 +203,5 @@ impl<S: System, T: Angle> Linearise<T> for Analytic<S, T> {
         changes.add_solved(&partials.tau, &mut result.by_input, inputs);
         changes.system.adjust(&directions.parameters, &mut changes.model);
         Ok(())
-    }
-
-    fn linearise_lagrangian(&mut self, t: T, q: &[T], v: &[T], result: &mut LagrangianPartials<T>) -> Result<(), IntegrationError> {
-        Ok(self.energies.linearise(&mut self.dual, &mut self.directions, (t, q, v), result)?)
-    }
-
-    fn momentum_by_inputs(&mut self, q: &[T], v: &[T], result: &mut [T]) -> Result<(), IntegrationError> {
-        Ok(self.energies.momentum_by_inputs(&mut self.dual, &mut self.directions, (q, v), result)?)
     }
 }

@@ -5,10 +5,8 @@
 //! Shapes: matrices are dense, row after row, `nv` rows. Units: as in [`crate::Aba`].
 //! Cost: 2·nv + inputs times that of [`crate::Aba::run`] over duals, about twice as many operations. A call does not allocate.
 
-use super::IntegrationError;
 use super::directions::{Directions, Input, copy};
 use super::dynamics::{Acceleration, Dynamics, System};
-use super::lagrangian::{Lagrangian, LagrangianPartials, MomentumAndForce};
 use crate::error::expect;
 use crate::{DimensionError, Error};
 use featherbench_model::Model;
@@ -65,33 +63,17 @@ pub trait Linearise<T>: Acceleration<T> {
     /// # Errors
     /// [`Error`] when an argument does not fit, or a joint meets no inertia.
     fn linearise(&mut self, t: T, q: &[T], v: &[T], a: &mut [T], result: &mut Linearisation<T>) -> Result<(), Error>;
-
-    /// The derivatives of the momentum M v and of the force of [`Acceleration::lagrangian`], which variational rules need.
-    ///
-    /// # Errors
-    /// [`IntegrationError`] when an argument does not fit, or there is no Lagrangian.
-    fn linearise_lagrangian(&mut self, _t: T, _q: &[T], _v: &[T], _result: &mut LagrangianPartials<T>) -> Result<(), IntegrationError> {
-        Err(IntegrationError::NoEnergies)
-    }
-
-    /// The derivative of the momentum M v by the inputs: nv × inputs, row after row.
-    ///
-    /// # Errors
-    /// As [`Linearise::linearise_lagrangian`].
-    fn momentum_by_inputs(&mut self, _q: &[T], _v: &[T], _result: &mut [T]) -> Result<(), IntegrationError> {
-        Err(IntegrationError::NoEnergies)
-    }
 }
 
 /// Gives the inputs of `at` to dynamics over duals, in a direction of `input`.
-pub(super) fn enter<S: System, T: Angle>(f: &mut Dynamics<S, Dual<T>>, at: &Directions<T>, input: Input) -> Result<(), DimensionError> {
+fn enter<S: System, T: Angle>(f: &mut Dynamics<S, Dual<T>>, at: &Directions<T>, input: Input) -> Result<(), DimensionError> {
     // also before a parameter: without the rate of the last control
     f.set_controls(&at.controls)?;
     if input == Input::Parameter { f.set_parameters(&at.parameters) } else { Ok(()) }
 }
 
 /// Takes the rates away after the last direction of an input.
-pub(super) fn leave<S: System, T: Angle>(f: &mut Dynamics<S, Dual<T>>, at: &Directions<T>) -> Result<(), DimensionError> {
+fn leave<S: System, T: Angle>(f: &mut Dynamics<S, Dual<T>>, at: &Directions<T>) -> Result<(), DimensionError> {
     f.set_controls(&at.controls)?;
     f.set_parameters(&at.parameters)
 }
@@ -102,7 +84,6 @@ pub struct ByDuals<S, T> {
     plain: Dynamics<S, T>,
     dual: Dynamics<S, Dual<T>>,
     directions: Directions<T>,
-    energies: MomentumAndForce<Dual<T>>,
     a: Vec<Dual<T>>,
 }
 
@@ -122,7 +103,6 @@ where
         Ok(Self {
             plain: Dynamics::new(model, system.clone(), parameters)?,
             dual: Dynamics::new(model, system, &directions.parameters)?,
-            energies: MomentumAndForce::new(&model.topology),
             a: vec![Dual::constant(T::zero()); model.topology.nv()],
             directions,
         })
@@ -132,10 +112,6 @@ where
 impl<S: System, T: Angle> Acceleration<T> for ByDuals<S, T> {
     fn acceleration(&mut self, t: T, q: &[T], v: &[T], a: &mut [T]) -> Result<(), Error> {
         self.plain.acceleration(t, q, v, a)
-    }
-
-    fn lagrangian(&mut self) -> Option<&mut dyn Lagrangian<T>> {
-        self.plain.lagrangian()
     }
 }
 
@@ -180,13 +156,5 @@ impl<S: System, T: Angle> Linearise<T> for ByDuals<S, T> {
             column(dual, at, &mut result.by_input, inputs, k)
         })?;
         Ok(leave(dual, directions)?)
-    }
-
-    fn linearise_lagrangian(&mut self, t: T, q: &[T], v: &[T], result: &mut LagrangianPartials<T>) -> Result<(), IntegrationError> {
-        Ok(self.energies.linearise(&mut self.dual, &mut self.directions, (t, q, v), result)?)
-    }
-
-    fn momentum_by_inputs(&mut self, q: &[T], v: &[T], result: &mut [T]) -> Result<(), IntegrationError> {
-        Ok(self.energies.momentum_by_inputs(&mut self.dual, &mut self.directions, (q, v), result)?)
     }
 }

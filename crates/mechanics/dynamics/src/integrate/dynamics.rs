@@ -3,9 +3,8 @@
 //! Computes: a = M⁻¹ (τ − h + Σ Jᵀf) by [`Aba`], with τ and f from a [`System`]. Frames, shapes and units: as in [`Aba`].
 //! Cost: that of [`Aba::run`] and of the system's forces. A call does not allocate.
 
-use super::lagrangian::Lagrangian;
 use crate::error::expect;
-use crate::{Aba, DimensionError, Error, Rnea};
+use crate::{Aba, DimensionError, Error};
 use featherbench_model::Model;
 use featherbench_spatial::{Angle, Force, Lift};
 
@@ -18,11 +17,6 @@ pub trait Acceleration<T> {
     /// # Errors
     /// [`Error`] when an argument does not fit, or a joint meets no inertia.
     fn acceleration(&mut self, t: T, q: &[T], v: &[T], a: &mut [T]) -> Result<(), Error>;
-
-    /// The energies and forces behind the acceleration, which variational rules need. A closure has none.
-    fn lagrangian(&mut self) -> Option<&mut dyn Lagrangian<T>> {
-        None
-    }
 }
 
 impl<T, F: FnMut(T, &[T], &[T], &mut [T]) -> Result<(), Error>> Acceleration<T> for F {
@@ -106,10 +100,7 @@ pub struct Dynamics<S, T> {
     system: S,
     model: Model<T>,
     aba: Aba<T>,
-    rnea: Rnea<T>,
     tau: Vec<T>,
-    /// A velocity and acceleration of zero.
-    zeros: Vec<T>,
     wrenches: Vec<Force<T>>,
     controls: Vec<T>,
     parameters: Vec<T>,
@@ -127,9 +118,7 @@ where
         let (topology, zero) = (&model.topology, T::zero());
         let mut dynamics = Self {
             aba: Aba::new(topology),
-            rnea: Rnea::new(topology),
             tau: vec![zero; topology.nv()],
-            zeros: vec![zero; topology.nv()],
             wrenches: vec![Force::zero(); if system.has_wrenches() { topology.bodies() } else { 0 }],
             controls: vec![zero; system.controls()],
             parameters: vec![zero; system.parameters()],
@@ -186,34 +175,5 @@ impl<S: System, T: Angle> Acceleration<T> for Dynamics<S, T> {
         wrenches.fill(Force::zero());
         system.forces(&Instant { time: t, q, v, controls, parameters }, tau, wrenches);
         aba.run(model, q, v, tau, if wrenches.is_empty() { None } else { Some(wrenches) }, a)
-    }
-
-    fn lagrangian(&mut self) -> Option<&mut dyn Lagrangian<T>> {
-        Some(self)
-    }
-}
-
-impl<S: System, T: Angle> Lagrangian<T> for Dynamics<S, T> {
-    fn model(&self) -> &Model<T> {
-        &self.model
-    }
-
-    fn joint_forces(&mut self, t: T, q: &[T], v: &[T], result: &mut [T]) -> Result<(), DimensionError> {
-        let Self { system, model, rnea, tau, wrenches, zeros, controls, parameters, .. } = self;
-        result.fill(T::zero());
-        wrenches.fill(Force::zero());
-        system.forces(&Instant { time: t, q, v, controls, parameters }, result, wrenches);
-        if !wrenches.is_empty() {
-            // Σ Jᵀf is what inverse dynamics takes less with the wrenches than without.
-            rnea.run(model, q, zeros, zeros, None, tau)?;
-            result.iter_mut().zip(tau.iter()).for_each(|(result, tau)| *result += *tau);
-            rnea.run(model, q, zeros, zeros, Some(wrenches), tau)?;
-            result.iter_mut().zip(tau.iter()).for_each(|(result, tau)| *result -= *tau);
-        }
-        Ok(())
-    }
-
-    fn solve(&mut self, f: &[T], x: &mut [T]) -> Result<(), DimensionError> {
-        self.aba.solve(&self.model, f, x)
     }
 }

@@ -35,9 +35,6 @@ pub enum IntegrationError {
         /// When the step began.
         time: f64,
     },
-    /// A variational rule was given an acceleration alone, for example a closure.
-    #[error("the variational rule needs energies and forces, not an acceleration alone: give it Dynamics, Analytic or ByDuals")]
-    NoEnergies,
     /// The tolerance asks for a step that time cannot resolve.
     #[error("at t = {time:e} the tolerance asks for a step of {step:e}, which is too small; the motion is not smooth there, or allow more")]
     StepTooSmall {

@@ -12,7 +12,6 @@
 //! |---|---|---|---|
 //! | [`SymplecticEuler`] | 1 | 1 | symplectic for a constant M |
 //! | [`ImplicitMidpoint`] | 2 | iterations | a step with −h undoes one with h; conserves what is quadratic in v |
-//! | [`VariationalMidpoint`] | 2 | 2, and energies in iterations | symplectic; conserves momentum to rounding |
 //! | [`RungeKutta4`] | 4 | 4 | |
 //! | [`DormandPrince`] | 5 | 6, and one more in the first step | an error estimate of order 4, hence adaptive steps |
 //!
@@ -21,7 +20,6 @@
 //!
 //! [`Acceleration`] is the right-hand side: a closure, or [`Dynamics`], the articulated-body algorithm with a [`System`] of forces.
 //! [`Linearise`] is the right-hand side with its derivatives: [`Analytic`] by recursions, [`ByDuals`] by dual numbers alone.
-//! [`VariationalMidpoint`] needs the energies too: [`Lagrangian`] with [`LagrangianPartials`]. All of them have those but closures.
 //!
 //! Times of steps, linearised steps and [`Integrator::pull`]: `docs/kernels/integrators.md`.
 
@@ -35,12 +33,10 @@ mod dynamics;
 mod error;
 mod explicit;
 mod forward;
-mod lagrangian;
 mod midpoint;
 mod rk4;
 mod rollout;
 mod symplectic_euler;
-mod variational;
 
 pub use adjoint::{Adjoint, Cost, CostGradient, Visit};
 pub use analytic::Analytic;
@@ -49,12 +45,10 @@ pub use dormand_prince::{DormandPrince, Statistics, Tolerance};
 pub use dynamics::{Acceleration, Dynamics, Instant, Motors, Passive, System};
 pub use error::IntegrationError;
 pub use forward::{Forward, sensitivity};
-pub use lagrangian::{Lagrangian, LagrangianPartials};
 pub use midpoint::ImplicitMidpoint;
 pub use rk4::RungeKutta4;
 pub use rollout::{Rollout, rollout};
 pub use symplectic_euler::SymplecticEuler;
-pub use variational::VariationalMidpoint;
 
 use featherbench_spatial::Angle;
 

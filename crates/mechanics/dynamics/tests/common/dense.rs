@@ -45,13 +45,6 @@ impl Dense {
         (0..self.n).map(|i| x.iter().enumerate().fold(DoubleDouble::zero(), |sum, (j, &x)| self.at(i, j).mul_add(x.into(), sum))).collect()
     }
 
-    /// LᵀDL of factors.
-    pub fn product_of(factors: &TreeSparse<f64>) -> Self {
-        let l = Self::lower(factors, true);
-        let scaled = Self::from_fn(l.n, |i, j| l.at(i, j) * factors.get(i, i).into());
-        l.transposed().times(&scaled)
-    }
-
     /// The largest difference of two entries, over the roots of the diagonal entries of this one: it has no unit.
     pub fn distance(&self, other: &Self) -> f64 {
         let root: Vec<f64> = (0..self.n).map(|i| self.at(i, i).to_f64().sqrt()).collect();

@@ -4,5 +4,3 @@ mod adaptive;
 mod conservation;
 mod order;
 mod sensitivity;
-mod variational;
-mod variational_derivative;

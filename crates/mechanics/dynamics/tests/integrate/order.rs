@@ -4,7 +4,7 @@ use crate::common;
 
 use common::{ROBOTS, build, larger, lifted, one_of, within};
 use featherbench_dynamics::integrate::{
-    DormandPrince, Dynamics, ImplicitMidpoint, Instant, Integrator, RungeKutta4, SymplecticEuler, System, VariationalMidpoint,
+    DormandPrince, Dynamics, ImplicitMidpoint, Instant, Integrator, RungeKutta4, SymplecticEuler, System,
 };
 use featherbench_model::{Model, difference};
 use featherbench_robots::StateBatch;
@@ -88,7 +88,6 @@ fn the_error_falls_at_the_order() {
         let truth = after(&mut DormandPrince::<DoubleDouble>::new(t), &model, &states, TIME, 512);
         check(&format!("symplectic Euler, {name}"), &model, &truth, SymplecticEuler::new(t), 256, &states);
         check(&format!("midpoint, {name}"), &model, &truth, ImplicitMidpoint::new(t), 64, &states);
-        check(&format!("variational midpoint, {name}"), &model, &truth, VariationalMidpoint::new(t), 64, &states);
         check(&format!("Runge–Kutta, {name}"), &model, &truth, RungeKutta4::new(t), 32, &states);
         check(&format!("Dormand–Prince, {name}"), &model, &truth, DormandPrince::new(t), 64, &states);
     }
@@ -109,6 +108,6 @@ fn doubles_lose_only_roundings() {
                 within(&format!("{}, {name}: rounding", stringify!($method)), error(&model, &truth, &found), 5e-14);
             )+};
         }
-        check!(SymplecticEuler, ImplicitMidpoint, VariationalMidpoint, RungeKutta4, DormandPrince);
+        check!(SymplecticEuler, ImplicitMidpoint, RungeKutta4, DormandPrince);
     }
 }

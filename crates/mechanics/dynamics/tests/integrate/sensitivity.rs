@@ -5,7 +5,7 @@ use crate::common;
 use common::{ROBOTS, build, distance, larger, largest, within};
 use featherbench_dynamics::integrate::{
     Adjoint, Analytic, ByDuals, Cost, CostGradient, DormandPrince, Forward, ImplicitMidpoint, Instant, IntegrationError, Integrator,
-    Linearisation, Linearise, Rollout, RungeKutta4, SymplecticEuler, System, VariationalMidpoint, Visit, rollout, sensitivity,
+    Linearisation, Linearise, Rollout, RungeKutta4, SymplecticEuler, System, Visit, rollout, sensitivity,
 };
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement, difference, integrate};
 use featherbench_robots::{Family, Random, StateBatch};
@@ -140,7 +140,7 @@ fn each(question: &impl Ask) {
                 question.ask(&name, &case, $method::with_derivatives(t, inputs), $method::<DoubleDouble>::new(t));
             )+};
         }
-        ask!(SymplecticEuler, ImplicitMidpoint, VariationalMidpoint, RungeKutta4, DormandPrince);
+        ask!(SymplecticEuler, ImplicitMidpoint, RungeKutta4, DormandPrince);
     }
 }
 
@@ -408,7 +408,7 @@ fn sensitivities_converge_at_the_order() {
                 Orders.ask(&name, &case, $method::with_derivatives(t, 2), $method::<DoubleDouble>::new(t));
             )+};
         }
-        ask!(SymplecticEuler, ImplicitMidpoint, VariationalMidpoint, RungeKutta4, DormandPrince);
+        ask!(SymplecticEuler, ImplicitMidpoint, RungeKutta4, DormandPrince);
     }
 }
 
@@ -425,7 +425,6 @@ fn what_does_not_fit_is_an_error() {
     assert!(complains(sensitivity(t, &mut RungeKutta4::new(t), &mut f, &fits, &direction)), "no room for derivatives");
     assert!(complains(sensitivity(t, &mut SymplecticEuler::new(t), &mut f, &fits, &direction)));
     assert!(complains(sensitivity(t, &mut ImplicitMidpoint::new(t), &mut f, &fits, &direction)));
-    assert!(complains(sensitivity(t, &mut VariationalMidpoint::new(t), &mut f, &fits, &direction)));
     let mut integrator = RungeKutta4::with_derivatives(t, case.inputs());
     for wrong in [
         Rollout { q: &fits.q[1..], ..fits },
