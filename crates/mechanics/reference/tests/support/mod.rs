@@ -11,7 +11,7 @@ mod tolerance;
 use featherbench_model::{Description, Model};
 use featherbench_reference::Mp;
 use featherbench_robots::{Family, Random, StateBatch};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// How the states of a case are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,7 +85,8 @@ pub fn describe(family: &str) -> Description {
 
 /// The project's root.
 pub fn project() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../..")
+    // Tests and examples are of two packages, whose folders are not alike deep.
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().find(|folder| folder.join("Cargo.lock").exists()).unwrap().to_owned()
 }
 
 /// max |x − y| / max |y|, or the larger of the two when y is zero.
