@@ -12,12 +12,15 @@ const TRIES: usize = 3;
 /// Robots of more bodies than this are tried only while there is no case: a step takes seconds.
 const MANY: usize = 64;
 
+/// Starts the engine of a name.
+pub type Open<'a, E> = dyn Fn(&str) -> Result<Box<dyn Engine>, E> + 'a;
+
 /// What is at hand while cases are reduced.
 pub struct Reducing<'a, E> {
     gates: &'a Gates,
     robots: &'a BTreeMap<&'a str, Vec<Robot>>,
     folder: &'a Path,
-    open: &'a dyn Fn(&str) -> Result<Box<dyn Engine>, E>,
+    open: &'a Open<'a, E>,
     engines: BTreeMap<String, Result<Box<dyn Engine>, E>>,
 }
 
@@ -32,12 +35,7 @@ struct Found<'a> {
 
 impl<'a, E: Display> Reducing<'a, E> {
     /// Cases of the robots of each run, judged by `gates` and written into a folder. `open` starts an engine that answers itself.
-    pub fn new(
-        gates: &'a Gates,
-        robots: &'a BTreeMap<&'a str, Vec<Robot>>,
-        folder: &'a Path,
-        open: &'a dyn Fn(&str) -> Result<Box<dyn Engine>, E>,
-    ) -> Self {
+    pub fn new(gates: &'a Gates, robots: &'a BTreeMap<&'a str, Vec<Robot>>, folder: &'a Path, open: &'a Open<'a, E>) -> Self {
         Self { gates, robots, folder, open, engines: BTreeMap::new() }
     }
 

@@ -12,7 +12,7 @@ mod programs;
 mod section;
 mod steps;
 
-pub use cases::Reducing;
+pub use cases::{Open, Reducing};
 pub use catalogue::{CATALOGUE, CATALOGUE_NAME, Catalogue, Line, Reduction, Status, told};
 pub use entries::{Entry, entries};
 pub use files::save;
