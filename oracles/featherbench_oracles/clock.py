@@ -2,7 +2,8 @@
 
 The overhead is the time of the same calls on a robot without bodies. They go the same way through Python and the engine's binding, and
 compute next to nothing. Each is made directly after one call of a sample, which has taken their code and data out of the caches. In a
-loop of their own they are up to a quarter faster, and the estimate would be too long by that. The errors: `guide/studies/timing.md`, "Limits".
+loop of their own they are up to a quarter faster, and the estimate would be too long by that.
+`guide/studies/timing.md`, "Limits", gives the errors.
 """
 
 from __future__ import annotations
