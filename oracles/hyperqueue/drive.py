@@ -28,7 +28,7 @@ def tell(**message) -> None:
 
 
 def end_with_the_caller() -> None:
-    """Ends this process when standard input closes: then nobody waits for the tasks."""
+    """Ends this process when standard input closes: then no one waits for the tasks."""
     sys.stdin.read()
     os._exit(1)
 

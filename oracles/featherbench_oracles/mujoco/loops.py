@@ -66,7 +66,7 @@ def loops(model: mj.MjModel, names: Sequence[str], description: Header, notes: l
 def _joint(model: mj.MjModel, k: int, name: str, kind: mj.mjtEq, names: Sequence[str], description: Header) -> Header:
     """Describe a `connect` or `weld`: two frames that coincide.
 
-    Between bodies, `eq_data` of a `connect` has the point in body 1 and the one in body 2; that of a `weld` has the point in body 2, the
+    Between bodies, `eq_data` of a `connect` has the point in body 1 and the one in body 2. That of a `weld` has the point in body 2, the
     point in body 1, and the quaternion of body 2's axes in body 1.
     """
     ids = (int(model.eq_obj1id[k]), int(model.eq_obj2id[k]))

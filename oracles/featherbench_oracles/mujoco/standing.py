@@ -5,8 +5,8 @@ MuJoCo solves no problem of G and b. It finds accelerations that minimise a conv
     min over a   |a - a_free|^2 / 2 in the metric of M  +  s(J a - a_ref)        R = (1 - d)/d * diag(G), softness of s
 
 Each point is a sphere of 1 um on a plane. d is the largest that MuJoCo takes, and a_ref = -J v/dt, without a pull out of the ground. So
-as d goes to one the points stop in the step, as in an impact without restitution, and the friction is that of the convex relaxation:
-a sliding point lifts with mu times its speed. The impulses are dt times the forces.
+as d goes to one the points stop in the step, as in an impact without restitution. The friction is that of the convex relaxation: a
+sliding point lifts with mu times its speed. The impulses are dt times the forces.
 """
 
 from __future__ import annotations

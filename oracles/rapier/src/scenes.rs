@@ -1,7 +1,8 @@
 //! Scenes: free bodies of rapier (maximal coordinates) with spheres and boxes over a half space.
 //!
-//! A contact of rapier is a damped spring that is solved implicitly by Gauss–Seidel sweeps over substeps: a relative velocity that removes the
-//! penetration with the spring's rate, then one more sweep without it. Friction has a round cone. Bodies have no damping and do not sleep.
+//! A contact of rapier is a damped spring that is solved implicitly by Gauss–Seidel sweeps over substeps. They aim at a relative velocity
+//! that removes the penetration with the spring's rate. Then comes one more sweep without it. Friction has a round cone. Bodies have no
+//! damping and do not sleep.
 
 use crate::refusal::{Refusal, failed};
 use featherbench_protocol::{Block, Message};

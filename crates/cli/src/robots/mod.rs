@@ -27,11 +27,11 @@ pub struct Loaded {
     pub suite: Suite,
     pub hash: String,
     pub robots: Vec<Robot>,
-    /// Whether it draws as many robots as its file says.
+    /// Whether it draws the number of robots that its file says.
     pub own_size: bool,
 }
 
-/// Whether a run with this `--size` draws as many robots as the suite's file says: `ci/counts.csv` is about such a run.
+/// Whether a run with this `--size` draws the number of robots that the suite's file says: `ci/counts.csv` is about such a run.
 pub fn is_own_size(suite: &Suite, size: Option<NonZeroUsize>) -> bool {
     size.is_none_or(|size| suite.draw.as_ref().is_some_and(|draw| draw.size == size.get()))
 }

@@ -291,7 +291,7 @@ fn a_suite_counts_its_rows() {
     assert!(!is_met(&[pass.clone(), Row { engine: "winch".into(), ..pass.clone() }]));
     let cells = ["1", "2"].map(|cell| Row { cell: cell.into(), ..pass.clone() });
     assert!(!is_met(&cells), "as many rows, and one cell more");
-    // Rows of engines that nobody named, times, studies that were left out, and other suites have no condition.
+    // Rows of engines that are not named, times, studies that were left out, and other suites have no condition.
     assert!(is_met(&[pass.clone(), pass.clone(), Row { engine: "winch".into(), ..pass.clone() }]));
     assert!(is_met(&[pass.clone(), pass.clone(), Row { kind: Kind::Measured, ..pass.clone() }]));
     assert!(counts(1, 2).conditions(&info(&["timing"]), &engines, &[]).is_empty());

@@ -34,9 +34,9 @@ fn bits(values: &[f64]) -> Vec<u64> {
 
 /// Of two recursions over a chain of this many bodies, each to this many halves of an ulp of its terms, the difference in ulps.
 ///
-/// A term of a joint force meets, per body: the rotation of its joint (5 roundings from q, outward and inward), two products with it (3 each), a
-/// cross product and a sum on each way (3 each), and the velocity product of the acceleration (2): 24. Once: the inertia's products, v × I v, their
-/// sum and the projection: 13.
+/// A term of a joint force meets 24 roundings per body. The rotation of its joint has 5 from q, outward and inward. Two products with it
+/// have 3 each. A cross product with a sum has 3 on each way. The velocity product of the acceleration has 2. Another 13 come once: the
+/// inertia's products, v × I v, their sum and the projection.
 fn roundings(depth: usize) -> f64 {
     24.0 * depth as f64 + 13.0
 }

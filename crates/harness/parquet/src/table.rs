@@ -8,9 +8,9 @@ use std::path::Path;
 
 /// The table of a file as CSV: a line of names, then a line per row. A number is read back from it to the bit.
 ///
-/// A field of text is in quotation marks of its own, `"5"`, and is no number. A field that is absent is the word `null`. Two things are lost that
-/// the file had: space around the name of a column, which readers of CSV trim; and that a number was a decimal or a half float: it is a
-/// number like another.
+/// A field of text is in quotation marks of its own, `"5"`, and is no number. A field that is absent is the word `null`. Two things that
+/// the file had are lost. Readers of CSV trim the space around the name of a column. A number no longer tells that it was a decimal or a
+/// half float: it is a number like another.
 ///
 /// # Errors
 /// [`Error::Unreadable`] when the file is no Parquet, or is compressed by another method than Snappy.

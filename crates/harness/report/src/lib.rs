@@ -3,10 +3,10 @@
 //! This crate knows no study. A study makes [`Section`]s from rows; [`write()`] puts them on the page in the order in which they are given.
 //! It is a pure function of its arguments and reads no clock.
 //!
-//! The folder needs no network and no server. `index.html` opens with the findings and names every section; what is large is brought when the
-//! window is near it or when it is opened, and has a page of its own under `sections/`. Each engine, robot and study has a page, too. `data/*.js` has the rows and those pieces: the page
-//! adds a script element to read them, as a page under `file://` may not fetch. [`mod@figure`] draws the plots of sections and the figures for papers,
-//! which are in `figures/`.
+//! The folder needs no network and no server. `index.html` opens with the findings and names every section. A large piece is brought when the
+//! window is near it or when it is opened. It has a page of its own under `sections/`. Each engine, robot and study has a page, too.
+//! `data/*.js` has the rows and those pieces: the page adds a script element to read them, as a page under `file://` may not fetch.
+//! [`mod@figure`] draws the plots of sections and the figures for papers, which are in `figures/`.
 //! Every number on the page is made from rows, and every cell and point leads back to its rows.
 //!
 //! # The order of the files

@@ -1,5 +1,7 @@
-//! What the first page leaves out at first, so that it is small: each piece is a script beside the page, which is run when the piece is
-//! wanted, and a page of its own for readers without scripts, for print and for links.
+//! What the first page leaves out at first, so that it is small.
+//!
+//! Each piece is a script beside the page, which is run when the piece is wanted. It is a page of its own, too: for readers without
+//! scripts, for print and for links.
 
 use maud::{Markup, html};
 

@@ -1,8 +1,13 @@
 //! A page over several runs: what each found, and what changed from one to the next.
 //!
-//! Runs of one suite are compared in the order in which they started: trends with their change points, findings that are new or gone, engines
-//! with another version, and rows that changed beyond noise by the rules of [`featherbench_results::diff`]. Runs of different suites are not
-//! compared.
+//! Runs of one suite are compared in the order in which they started. The page shows:
+//!
+//! - trends with their change points,
+//! - findings that are new or gone,
+//! - engines with another version,
+//! - rows that changed beyond noise by the rules of [`featherbench_results::diff`].
+//!
+//! Runs of different suites are not compared.
 
 use featherbench_results::{Row, RunInfo, Severity};
 use maud::{Markup, html};

@@ -53,8 +53,9 @@ pub struct Section {
     pub appendix: bool,
 }
 
-/// A piece of the report that the first page does not hold at first: it is brought from its own script when it is opened, and it has a page of
-/// its own, which needs no script.
+/// A piece of the report that the first page does not hold at first.
+///
+/// It is brought from its own script when it is opened. It has a page of its own, which needs no script.
 #[derive(Debug)]
 pub struct Part {
     /// Its name among all parts and sections; its page is `sections/NAME.html`.

@@ -1,8 +1,11 @@
 //! Trends: one number over several runs of a suite, and where it changed beyond noise.
 //!
 //! # The rule
-//! Two values of a number are *apart* as in [`diff`](crate::diff): times when their intervals are disjoint and their ratio is beyond
-//! [`TIME_NOISE`] and the A/A controls of both runs; errors by a factor of [`ERROR_FACTOR`]; counts when they differ.
+//! Two values of a number are *apart* as in [`diff`](crate::diff):
+//!
+//! - Times are apart when their intervals are disjoint and their ratio is beyond [`TIME_NOISE`] and the A/A controls of both runs.
+//! - Errors are apart when they differ by a factor of [`ERROR_FACTOR`].
+//! - Counts are apart when they differ.
 //!
 //! A *change point* lies between two runs if each of the last three values before it is apart from each of the first three after it, all on the
 //! same side. The values before it are those since the change point before. So a single run out of line is none. Under no change, six values

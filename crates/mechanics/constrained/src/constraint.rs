@@ -186,9 +186,17 @@ impl Constraints {
     /// The constraints of a robot with this tree; rows in this order.
     ///
     /// # Errors
-    /// [`BadConstraint`], which names the constraint: a body or dof that does not exist, a number that is not finite, a placement that is
-    /// no rotation, both ends on one body, no axis held, a length that is not positive, a gear of fewer than two wheels, a joint without a
-    /// coordinate, two constraints of one name.
+    /// [`BadConstraint`], which names the constraint:
+    ///
+    /// - a body or dof that does not exist,
+    /// - a number that is not finite,
+    /// - a placement that is no rotation,
+    /// - both ends on one body,
+    /// - no axis held,
+    /// - a length that is not positive,
+    /// - a gear of fewer than two wheels, with a dof twice or a coefficient of zero,
+    /// - a joint without a coordinate,
+    /// - two constraints of one name.
     ///
     /// ```
     /// use featherbench_constrained::{Attachment, Constraint, Constraints};

@@ -12,8 +12,8 @@
 //! - [`stabilise`] keeps loops closed in time, and measures their drift.
 //! - [`library`] has robots with loops whose motion is known.
 //!
-//! Conventions: SI units; rows have the axes of the first frame of their constraint; multipliers act on the second frame as they are named,
-//! and opposite on the first. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms* (2008).
+//! Conventions: units are SI. Rows have the axes of the first frame of their constraint. Multipliers act on the second frame as they are
+//! named, and opposite on the first. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms* (2008).
 //!
 //! ```
 //! use featherbench_constrained::{Constrained, Kkt, library::Ladder};

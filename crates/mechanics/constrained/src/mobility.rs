@@ -1,6 +1,6 @@
 //! True mobility: the dofs of the tree less the rank of the constraint Jacobian, at configurations that close the loops.
 //!
-//! The rank counts the singular values of J above `1e-10` of the largest: a closed loop leaves 10⁻¹³ of a dependent row, and the shortest
+//! The rank counts the singular values of J above `1e-10` of the largest. A closed loop leaves 10⁻¹³ of a dependent row. The shortest
 //! independent rows of a mechanism near its singularity are longer than 10⁻⁸. Rank is counted at each configuration. The generic mobility
 //! is the least of all: at a singular configuration J loses rank, and gives more instantaneous freedom than there is motion.
 //! Source: C. Gosselin and J. Angeles (1990) for singularities of loops; singular values: `singular.rs`.

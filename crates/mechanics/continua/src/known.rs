@@ -51,9 +51,9 @@ pub struct Elastica {
 
 /// The cantilever with a dead force P across its unloaded axis at the tip: α = P L²/EI > 0.
 ///
-/// From EI θ'' = −P cos θ: with k² = (1 + sin θ_L)/2 and sin θ = 2 k² sin² φ − 1,
-/// `√α = ∫ dφ/√(1 − k² sin² φ)` from sin φ₁ = 1/(k √2) to π/2, and the same integral of sin θ is √α δ/L. x/L = √(2 sin θ_L/α).
-/// θ_L is found by bisection; the integrals are Gauss sums of 16 parts with 16 points. NaN for α that is not positive.
+/// From EI θ'' = −P cos θ, with k² = (1 + sin θ_L)/2 and sin θ = 2 k² sin² φ − 1: `√α = ∫ dφ/√(1 − k² sin² φ)` from sin φ₁ = 1/(k √2) to
+/// π/2. The same integral of sin θ is √α δ/L. The reach is x/L = √(2 sin θ_L/α). Bisection finds θ_L. The integrals are Gauss sums of 16
+/// parts with 16 points. NaN for α that is not positive.
 ///
 /// ```
 /// use featherbench_continua::known::elastica;
@@ -125,8 +125,8 @@ pub fn sections_tip_prefactor(alpha: f64) -> f64 {
     tip_prefactor(alpha, |alpha, _, squares| alpha * alpha * squares / 24.0)
 }
 
-/// The same with a flex of edges, p = 2: nodes with masses, and hinges of the energy EI (2 tan(φ/2))²/2l, as in discrete elastic rods; 2EI/h at
-/// the wall. It is that of [`Hinges::StartStiffWall`] with h²/12 ∫ θ'⁴ more, where θ'² = 2α (sin θ_L − sin θ).
+/// The same with a flex of edges, p = 2: nodes with masses, and hinges of the energy EI (2 tan(φ/2))²/2l, as in discrete elastic rods;
+/// 2EI/h at the clamp. It is that of [`Hinges::StartStiffWall`] with h²/12 ∫ θ'⁴ more, where θ'² = 2α (sin θ_L − sin θ).
 ///
 /// At α = 10 both parts nearly cancel: −0.069 of 0.553 and −0.622. There the term of n⁻³ is larger up to some hundred edges.
 pub fn edges_tip_prefactor(alpha: f64) -> f64 {
@@ -252,9 +252,9 @@ fn sigma_beta(k: usize) -> f64 {
 
 /// The prefactor c of the frequency error of mode `k`, from 0, of rigid links: ω/ω_exact − 1 → c/n^p, p = 1 for [`Hinges::Start`] and 2 else.
 ///
-/// Inside the rod, links have M and K with the same factor 1 + h²/6 ∂², which cancels. At the wall they have y(0) = −h²/8 w'' and y'(0) = −h²/24
-/// w''' (middle), y'(0) = h/2 w'' (start) or −h²/6 w''' (2EI/h). Green's identity gives δλ = w'''(0) y(0) − w''(0) y'(0), where w''(0) w'''(0) =
-/// −4σβ⁵ for ∫ w² = 1. So c = σβ/6, −1 and −σβ/3.
+/// Inside the rod, links have M and K with the same factor 1 + h²/6 ∂², which cancels. At the clamp they have y(0) = −h²/8 w'' and
+/// y'(0) = −h²/24 w''' (middle), y'(0) = h/2 w'' (start) or −h²/6 w''' (2EI/h). Green's identity gives δλ = w'''(0) y(0) − w''(0) y'(0), where
+/// w''(0) w'''(0) = −4σβ⁵ for ∫ w² = 1. So c = σβ/6, −1 and −σβ/3.
 ///
 /// ```
 /// use featherbench_continua::{Hinges, known::links_frequency_prefactor};

@@ -65,7 +65,7 @@ fn smallest(matrix: &DMatrix<f64>) -> f64 {
     if largest == 0.0 { 0.0 } else { eigenvalues.min() / largest }
 }
 
-/// The matrices M and K of a cantilever's bending by collocation: ρA ẅ + EI w⁗ = 0 at as many Gauss points as shape functions,
+/// The matrices M and K of a cantilever's bending by collocation: ρA ẅ + EI w⁗ = 0 at n Gauss points for n shape functions,
 /// M_ij = ρA φ_j(x_i), K_ij = EI φ_j⁗(x_i)/L⁴. It is here to be judged, not to be used.
 ///
 /// # Errors

@@ -203,8 +203,8 @@ fn humanoid_with(count: usize) -> (Assembly, Continuum) {
     (assembly, continuum)
 }
 
-/// What `examples/rod_on_humanoid.rs` times: the answers are those of ABA on the bodies' own model with the springs as forces, and the operations of
-/// ABA grow by the same number with each link.
+/// What `examples/rod_on_humanoid.rs` times. The answers are those of ABA on the bodies' own model with the springs as forces. The
+/// operations of ABA grow by the same number with each link.
 #[test]
 fn a_rod_on_a_humanoid_is_a_tree_and_costs_the_same_per_link() {
     let (assembly, continuum) = humanoid_with(30);

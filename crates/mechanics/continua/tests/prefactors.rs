@@ -95,8 +95,8 @@ fn beam_equation(beta: Wide) -> Wide {
     cos + e * wide(2.0) / (wide(1.0) + e * e)
 }
 
-/// What is left at the top of a hanging chain of uniform rods at ω² = λ, g = L = 1 and total mass 1, from the free end up: u is the deflection
-/// of a rod's lower end, H and W the horizontal force and the weight below it, θ its angle by its moments.
+/// What is left at the top of a hanging chain of uniform rods, from the free end up. Here ω² = λ, g = L = 1 and the total mass is 1. The
+/// deflection of a rod's lower end is u. The horizontal force and the weight below it are H and W. Its angle θ is by its moments.
 fn string(n: usize, square: Wide) -> Wide {
     let l = wide(1.0) / wide(n as f64);
     let (mut u, mut force, mut weight) = (wide(1.0), wide(0.0), wide(0.0));

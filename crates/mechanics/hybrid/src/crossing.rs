@@ -35,8 +35,8 @@ const RESOLUTION: f64 = 1e-4;
 /// Where that is looked at: not at equal distances, so that no oscillation is met at its zeros alone.
 const LOOKS: [f64; 4] = [0.13, 0.31, 0.72, 0.89];
 
-/// How far a guard along the dense output is from the polynomial through its values and rates at the beginning, the middle and the end; 1
-/// is what is allowed, and NaN is none.
+/// How far a guard along the dense output is from a polynomial. The polynomial goes through the guard's values and rates at the beginning,
+/// the middle and the end. A distance up to 1 is allowed, and NaN is not.
 pub(crate) fn unresolved<S: Hybrid, T: Real>(bound: &Bound<S, T>, guard: usize, dense: &Dense<T>, settings: &Settings) -> f64 {
     let at = |s: f64| {
         let (t, x, rate) = dense.at(s);

@@ -54,7 +54,7 @@ pub fn disturbed(samples: &Samples, deviation: f64, seed: u64) -> Samples {
     samples
 }
 
-/// How the estimates of many draws of noise scatter, against the theory `σ²(Y₁ᵀY₁)⁻¹`.
+/// How the estimates of many draws of noise spread, against the theory `σ²(Y₁ᵀY₁)⁻¹`.
 ///
 /// Estimates are whitened, `e = R(β̂ − β)/σ` with `RᵀR = Y₁ᵀY₁`: then the theory's covariance is the identity, whatever the units.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -19,8 +19,8 @@ fn axes(robot: &Description, count: usize) -> Vec<[Vec3<f64>; 2]> {
     axes
 }
 
-/// What the axes have whatever the frames are: of neighbours the cosine of their angle and their distance; of each, how far the feet of both common
-/// normals are apart along it. `None` where neighbours are parallel, and feet are anywhere.
+/// What the axes have whatever the frames are. Of neighbours: the cosine of their angle, and their distance. Of each: how far the feet of
+/// both common normals are apart along it. This is `None` where neighbours are parallel, and feet are anywhere.
 fn invariants(axes: &[[Vec3<f64>; 2]]) -> Vec<Option<f64>> {
     // The point of the first axis that is nearest to the second.
     let foot = |[z, p]: [Vec3<f64>; 2], [other, o]: [Vec3<f64>; 2]| {

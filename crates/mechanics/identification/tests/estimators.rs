@@ -122,7 +122,7 @@ fn consistent_estimates_are_consistent() {
     assert!(error(&consistent.beta, &due) < 2.0 * error(&plain.beta, &due));
 }
 
-/// Estimates scatter as the theory says; five hundred draws, a variance known to 2 %.
+/// Estimates spread as the theory says; five hundred draws, a variance known to 2 %.
 #[test]
 fn estimates_scatter_as_the_theory_says() {
     let scenario = Scenario::of(&Arm::general(2, 4), Terms { viscous: true, coulomb: true, ..Terms::NONE }, 40).unwrap();

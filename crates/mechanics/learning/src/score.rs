@@ -51,8 +51,10 @@ pub struct Escape {
 pub(crate) type Changes = Vec<(f64, f64, Option<f64>)>;
 
 impl Rollout {
-    /// Integrates a model, and reads the energy of `judge` (the truth) and of the model itself at each time: (time, judge's, own), both as
-    /// changes since the start over the judge's energy at the start above rest, that is above q = 0.
+    /// Integrates a model, and reads two energies at each time: that of `judge` (the truth), and that of the model itself.
+    ///
+    /// Each time gives (time, judge's, own). Both energies are changes since the start, over the judge's energy at the start above rest,
+    /// that is above q = 0.
     ///
     /// The motion ends where the model escapes: then the second value says when, and later times are missing.
     ///

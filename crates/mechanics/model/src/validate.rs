@@ -304,8 +304,12 @@ impl Description {
         Ok(())
     }
 
-    /// The warnings: axes and rotations that are normalised by more than an ulp, moving bodies without mass, and moving bodies with an
-    /// inertia that no mass distribution has; and loops, of which a model knows nothing.
+    /// The warnings:
+    ///
+    /// - axes and rotations that are normalised by more than an ulp,
+    /// - moving bodies without mass,
+    /// - moving bodies with an inertia that no mass distribution has,
+    /// - loops, of which a model knows nothing.
     pub fn warnings(&self) -> Vec<Warning> {
         let moving = self.bodies.iter().filter(|body| body.joint.kind != JointType::Fixed);
         let names: Vec<String> = self.loops.iter().map(|tie| tie.name.clone()).collect();

@@ -214,8 +214,9 @@ impl Described {
         WellPosed::of(&nominal.mass_matrix(state.q)?, &self.by_acceleration(state)?)
     }
 
-    /// The inner state of drives that put out what is commanded, so that their r is zero: springs are bent by u/K and turn with the joint, the others
-    /// have put out u for long.
+    /// The inner state of drives that put out what is commanded, so that their r is zero.
+    ///
+    /// Springs are bent by u/K and turn with the joint. The other drives have put out u for long.
     ///
     /// # Errors
     /// [`ResidualError::Dimension`] when a length does not fit.

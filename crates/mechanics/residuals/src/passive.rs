@@ -6,10 +6,14 @@
 //! d/dt (Ê + E) = vᵀτ − vᵀD v
 //! ```
 //!
-//! so it is conservative for D = 0 (or D skew) and dissipative for D + Dᵀ ⪰ 0. The nearest such residual, in the Frobenius norm of each matrix, is
-//! known in closed form: the symmetric part of K; of D the skew part, and the symmetric part with its negative eigenvalues set to zero; of A the
-//! symmetric part, with the eigenvalues of L + A raised to a margin. L is any matrix with M(q) ⪰ L for all q: zero is one.
-//! The [`Certificate`] is the smallest eigenvalue of each, computed from the result.
+//! so it is conservative for D = 0 (or D skew) and dissipative for D + Dᵀ ⪰ 0. The nearest such residual, in the Frobenius norm of each
+//! matrix, is known in closed form:
+//!
+//! - of K, the symmetric part;
+//! - of D, the skew part, and the symmetric part with its negative eigenvalues set to zero;
+//! - of A, the symmetric part, with the eigenvalues of L + A raised to a margin.
+//!
+//! L is any matrix with M(q) ⪰ L for all q: zero is one. The [`Certificate`] is the smallest eigenvalue of each, computed from the result.
 
 use crate::error::{expect, finite};
 use crate::{Linear, Residual, ResidualError, State};

@@ -11,10 +11,19 @@
 //! | Monte Carlo | `sampling.rs` | all of it | N^(−1/2), with standard errors |
 //! | scrambled Sobol' points | `sampling.rs` | all of it | about N^(−1) and better for smooth answers, with standard errors |
 //!
-//! The parts: `variable.rs` (a distribution: quantile, moments, orthogonal polynomials), `space.rs` (all variables, correlated by a Gaussian
-//! copula), `quadrature.rs` (Gauss rules), `sobol.rs` (points), `response.rs` (a function of the variables in SIMD lanes), `robot/` (the
-//! dynamics of a robot as such a function), `sensitivity.rs` (Sobol' indices by sampling), `mixture.rs` (answers that differ by contact mode),
-//! `moments.rs` and `histogram.rs` (what samples are reduced to).
+//! The parts:
+//!
+//! | file | what it is |
+//! |---|---|
+//! | `variable.rs` | a distribution: quantile, moments, orthogonal polynomials |
+//! | `space.rs` | all variables, correlated by a Gaussian copula |
+//! | `quadrature.rs` | Gauss rules |
+//! | `sobol.rs` | points |
+//! | `response.rs` | a function of the variables in SIMD lanes |
+//! | `robot/` | the dynamics of a robot as such a function |
+//! | `sensitivity.rs` | Sobol' indices by sampling |
+//! | `mixture.rs` | answers that differ by contact mode |
+//! | `moments.rs`, `histogram.rs` | what samples are reduced to |
 //!
 //! **Same digits for any number of threads.** A sample is a function of seed and index. Samples are reduced in blocks of fixed size, and blocks
 //! are merged in their order.

@@ -3,9 +3,9 @@
 //! Source: I. M. Sobol', 1967 (the sequence); P. Bratley and B. L. Fox, *ACM TOMS* 14, 1988 (the recurrence of the direction numbers); A. B. Owen,
 //! 1995 (nested uniform scrambling: each bit is flipped or not by a random function of all bits before it).
 //!
-//! The primitive polynomials are found by search, in rising degree. The first direction numbers of a dimension are free (odd numbers m_i < 2^i):
-//! of some candidates, drawn from a fixed seed, the one is taken whose planes with the dimensions before it are evenly filled, by the quality
-//! parameter t of each plane. So no table is needed. Published tables have better numbers in high dimensions.
+//! The primitive polynomials are found by search, in rising degree. The first direction numbers of a dimension are free (odd numbers
+//! m_i < 2^i). Some candidates are drawn from a fixed seed. The one is taken whose planes with the dimensions before it are most evenly
+//! filled, by the quality parameter t of each plane. So no table is needed. Published tables have better numbers in high dimensions.
 //! No crate was fit: those with a permissive licence stop at 2¹⁶ points of single precision, or have no scrambling.
 
 use crate::Error;

@@ -22,8 +22,8 @@ fn exact() -> (f64, f64) {
     (mean, 1.0 / 0.96 - mean * mean)
 }
 
-/// Gauss–Legendre: the error of the variance falls by the square of ρ = (1 − √(1 − δ²))/δ per point, to the rounding of a deviation of 0.1 that
-/// is the sum of products near one (some 1e-15 each, and it is squared).
+/// Gauss–Legendre: the error of the variance falls by the square of ρ = (1 − √(1 − δ²))/δ per point. It falls to the rounding of a
+/// deviation of 0.1 that is the sum of products near one (some 1e-15 each, and it is squared).
 #[test]
 fn chaos_converges_exponentially() {
     let (mean, variance) = exact();

@@ -37,7 +37,7 @@ impl Equations {
     /// ```
     ///
     /// # Errors
-    /// [`AlgebraError::Shape`] if there are not as many rates as coordinates.
+    /// [`AlgebraError::Shape`] if the numbers of rates and coordinates differ.
     pub fn of(a: &mut Algebra, lagrangian: Expression, q: &[Expression], rates: &[Expression]) -> Result<Self, AlgebraError> {
         if q.len() != rates.len() {
             return Err(AlgebraError::Shape { what: "rates", found: rates.len(), due: q.len() });
@@ -60,7 +60,7 @@ impl Equations {
     /// q̈ for the joint forces `tau`.
     ///
     /// # Errors
-    /// [`AlgebraError::Shape`] if there are not as many forces as coordinates.
+    /// [`AlgebraError::Shape`] if the numbers of forces and coordinates differ.
     pub fn accelerations(&self, a: &mut Algebra, tau: &[Expression]) -> Result<Vec<Expression>, AlgebraError> {
         let n = self.bias.len();
         if tau.len() != n {

@@ -41,8 +41,11 @@ pub struct Entry<'a> {
     pub found: Vec<(&'a Row, Finding)>,
 }
 
-/// The entries of the rows of one run or several: one for each known deviation and each reproduction, then one for each method of an engine that fails for no known
-/// cause, then one for each whose error is above rounding in the studies `accuracy` and `sweep`.
+/// The entries of the rows of one run or several, in this order:
+///
+/// - one for each known deviation and each reproduction,
+/// - one for each engine, quantity and method that fails for no known cause,
+/// - one for each other whose error is above rounding in the studies `accuracy` and `sweep`.
 ///
 /// With cells named by the beginnings of their ids, those that have a row of these cells.
 pub fn entries<'a>(gates: &Gates, rows: &'a [Row], named: &[String]) -> Vec<Entry<'a>> {

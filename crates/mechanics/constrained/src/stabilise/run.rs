@@ -27,8 +27,9 @@ pub enum Stabilisation {
         /// Stiffness β, 1/s; not negative.
         beta: f64,
     },
-    /// q and v are projected after each step, and before each acceleration: rows that are redundant on the constraints are not so beside
-    /// them, and the stages of a step lie h² beside them.
+    /// q and v are projected after each step, and before each acceleration.
+    ///
+    /// Rows that are redundant on the constraints are not so beside them, and the stages of a step lie h² beside them.
     Projection(Projection),
 }
 

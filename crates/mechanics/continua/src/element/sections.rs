@@ -1,8 +1,8 @@
 //! Elements of constant strain (a Cosserat rod): the pose along an element is exp(x ξ), ξ = [κ; ε] constant.
 //!
 //! Source: F. Renda, F. Boyer, J. Dias and L. Seneviratne (2018), "Discrete Cosserat approach for multisection soft manipulator dynamics",
-//! whose poses these are. Here each Gauss point is a body on a free joint from the point before: with Δ the distance of the two, the joint
-//! is at exp(Δ ξ), and its velocity in body axes is J(Δ ξ) Δ ξ̇, with the right Jacobian J of the exponential.
+//! whose poses these are. Here each Gauss point is a body on a free joint from the point before. Let Δ be the distance of the two. The
+//! joint is at exp(Δ ξ). Its velocity in body axes is J(Δ ξ) Δ ξ̇, with the right Jacobian J of the exponential.
 
 use super::{along, massless};
 use crate::assembly::{Host, Made, Piece, Ties};

@@ -1,9 +1,9 @@
 //! MJCF, MuJoCo's format, read and written.
 //!
-//! The import is of what can be read without MuJoCo's compiler: bodies, joints, inertials, shapes whose mass has a closed form, classes,
-//! angles in degrees or radians, all orientations, and files that are included. What MuJoCo's compiler alone makes of a file is an error
-//! that names it: repeated and attached parts, meshes without an inertial, masses that the compiler edits. `featherbench gen mjcf` reads
-//! such files by MuJoCo.
+//! The import is of what can be read without MuJoCo's compiler. It reads bodies, joints, inertials, shapes whose mass has a closed form,
+//! classes, angles in degrees or radians, all orientations, and files that are included. What MuJoCo's compiler alone makes of a file is an
+//! error that names it: repeated and attached parts, meshes without an inertial, masses that the compiler edits. `featherbench gen mjcf`
+//! reads such files by MuJoCo.
 //!
 //! - Positions are MuJoCo's: a hinge with a `ref` is at its place in the file when its coordinate is `ref`; a free joint's are relative to
 //!   the world. Quaternions end with w, and a free joint's velocity is in body axes, as everywhere here.

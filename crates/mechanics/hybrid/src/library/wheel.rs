@@ -3,8 +3,10 @@
 use crate::system::{Direction, Hybrid};
 use featherbench_spatial::Real;
 
-/// A wheel of spokes without a rim rolls down a slope: x = (angle ϑ of the spoke on the ground from the vertical in rad, rate ω in rad/s),
-/// θ = (g/l in 1/s², slope γ, half the angle between spokes α).
+/// A wheel of spokes without a rim rolls down a slope.
+///
+/// The state is x = (angle ϑ of the spoke on the ground from the vertical in rad, rate ω in rad/s). The parameters are θ = (g/l in 1/s²,
+/// slope γ, half the angle between spokes α).
 ///
 /// ```text
 /// ϑ̈ = (g/l) sin ϑ     ϑ − γ − α rises through 0     ϑ⁺ = ϑ⁻ − 2α, ω⁺ = cos 2α ω⁻

@@ -4,9 +4,10 @@
 //! minimise over φ:  ‖Y θ(φ) − τ‖² + (pull · s)² ‖φ − φ₀‖²
 //! ```
 //!
-//! φ has ten numbers per body ([`LogCholesky`]), the logarithm of each armature, viscous and Coulomb friction (which are not negative), and
-//! the offsets as they are. φ₀ is the description. s is the longest column of ∂(Yθ)/∂φ at φ₀; the pull decides only what the torques do not
-//! tell. Y enters by its triangular factor: so a step costs O(p³), whatever the length of the log.
+//! φ has ten numbers per body ([`LogCholesky`]). It has the logarithms of each armature, viscous and Coulomb friction, which are not
+//! negative. The offsets are in it as they are. The start φ₀ is the description. The scale s is the longest column of ∂(Yθ)/∂φ at φ₀. The
+//! pull decides only what the torques do not tell. Y enters by its triangular factor: so a step costs O(p³), whatever the length of the
+//! log.
 
 use super::{Fit, fit, sizes};
 use crate::{Base, IdentificationError, Information, Kind, LinearModel, LogCholesky, PseudoInertia, Samples, Stacking};

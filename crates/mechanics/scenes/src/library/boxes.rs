@@ -55,8 +55,12 @@ impl BoxStack {
             .collect()
     }
 
-    /// The question: errors of the loads, how far the pressure is from the middle of each plane (over the half edge), how deep the top sinks and
-    /// how far a box drifts (over the lowest half edge), and the energy that appears (over that of the stack above the ground).
+    /// The question, which measures:
+    ///
+    /// - errors of the loads,
+    /// - how far the pressure is from the middle of each plane, over the half edge,
+    /// - how deep the top sinks and how far a box drifts, over the lowest half edge,
+    /// - the energy that appears, over that of the stack above the ground.
     pub fn question(&self) -> Question {
         let places = self.places();
         let bodies: Vec<Body> = places

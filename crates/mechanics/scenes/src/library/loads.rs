@@ -178,8 +178,11 @@ impl Table {
         [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(sx, sy)| self.weight / 4.0 * (1.0 + sx * x + sy * y))
     }
 
-    /// The question: the wrench of the contacts against W, how far the legs' forces are from the set of all that hold it, and where in
-    /// that set they are: the part along (1, −1, 1, −1)/2 over W, which no law determines.
+    /// The question, which measures:
+    ///
+    /// - the wrench of the contacts against W,
+    /// - how far the legs' forces are from the set of all that hold it,
+    /// - where in that set they are: the part along (1, −1, 1, −1)/2 over W, which no law determines.
     pub fn question(&self) -> Question {
         let (legs, least, weight) = (self.legs(), self.least_forces(), self.weight);
         let mass = weight / self.gravity;

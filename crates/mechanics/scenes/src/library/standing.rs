@@ -128,8 +128,11 @@ impl Standing {
         Some(Locked { mass, centre, inertia, feet, q, model })
     }
 
-    /// The question: the contacts' wrench against weight and push (about the centre of mass, over the weight and the smallest distance of a foot),
-    /// the sum of their normal forces over the weight, and how far the robot sinks and drifts over its height.
+    /// The question, which measures:
+    ///
+    /// - the contacts' wrench against weight and push, about the centre of mass, over the weight and the smallest distance of a foot,
+    /// - how far the sum of their normal forces over the weight is from 1,
+    /// - how far the robot sinks and drifts, over the height of its centre of mass.
     ///
     /// Where [`Standing::locked`] is none, the scene has no bodies, and every engine refuses it.
     pub fn question(&self) -> Question {

@@ -1,7 +1,8 @@
 //! The dynamics of a robot at a state, as a function of its uncertain parameters.
 //!
-//! At a fixed (q, v) the mass matrix M and the bias force h are linear in the inertial parameters π (ten per body, about the body's origin) and
-//! in armature, damping and friction. π itself is affine in mass, density and inertia. It is quadratic in a centre of mass. So with
+//! At a fixed (q, v) the mass matrix M and the bias force h are linear in the inertial parameters π (ten per body, about the body's
+//! origin). They are linear in armature, damping and friction, too. In turn, π is affine in mass, density and inertia. It is quadratic in a
+//! centre of mass. So with
 //!
 //! - θ_k = x_k for every variable k that acts on such numbers,
 //! - and θ_j = π_j(x) for the ten parameters of each body whose centre of mass is uncertain,

@@ -123,8 +123,8 @@ fn heavy(name: &'static str, n: usize) -> Case {
 
 /// A stiff rod on a free hub with a body at its tip: the hub's accelerations beside those of the rigid tree.
 ///
-/// Where the deflection or rounding of K x alone is above the tolerance, it is not due, and the number `within_reach` is 0: it must be what `reach`
-/// tells, so that no wide bound excuses a wrong answer.
+/// Where the deflection or rounding of K x alone is above the tolerance, the tolerance is not due, and the number `within_reach` is 0.
+/// This number must be what `reach` tells, so that no wide bound excuses a wrong answer.
 fn stiff(name: &'static str, n: usize, factor: f64, reach: bool) -> Case {
     let numbers = vec![
         count("beyond_bound", 0.0, "theory"),

@@ -120,7 +120,7 @@ fn with_noise(shared: &Shared, method: Method) -> Case {
     }
 }
 
-/// The scatter of a thousand estimates against σ²(YᵀY)⁻¹.
+/// The spread of a thousand estimates against σ²(YᵀY)⁻¹.
 fn repeats(shared: &Shared, set: u64) -> Case {
     let own = shared.clone();
     let mut params = shared.params();

@@ -3,7 +3,7 @@
 //! Robots whose ranks follow a law, and robots whose true parameters are known:
 //!
 //! - `ranks.rs`: ranks of the torque regressor by three ways, against the laws;
-//! - `estimates.rs`: estimators without noise, the scatter of repeats, intervals, held-out error;
+//! - `estimates.rs`: estimators without noise, the spread of repeats, intervals, held-out error;
 //! - `bodies.rs`: which parameters a body can have, log-Cholesky numbers, exciting trajectories;
 //! - `witness.rs`: the same samples through the regressors of other engines, in live runs.
 

@@ -1,8 +1,13 @@
 //! Loops: how right are engines' accelerations and motions of robots with loops, and what do they cost?
 //!
-//! Every engine gets the same descriptions with `loops`, and holds them by its own means: rigid constraints with a proximal solver (Pinocchio),
-//! soft equality constraints (MuJoCo), almost rigid ones (Drake), impulses of a step (DART). The settings that an answer depends on are in its
-//! rows. The states that come back are judged here alone:
+//! Every engine gets the same descriptions with `loops`, and holds them by its own means:
+//!
+//! - Pinocchio: rigid constraints with a proximal solver,
+//! - MuJoCo: soft equality constraints,
+//! - Drake: almost rigid ones,
+//! - DART: impulses of a step.
+//!
+//! The settings that an answer depends on are in its rows. The states that come back are judged here alone:
 //!
 //! | quantity | metric | against |
 //! |---|---|---|

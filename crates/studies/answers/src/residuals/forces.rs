@@ -38,8 +38,8 @@ fn closed_form(second_mass: f64, q: [f64; 2], v: [f64; 2], tau: [f64; 2]) -> Opt
     Some([a.x, a.y])
 }
 
-/// A second rod of another mass than the nominal 1 kg, as a payload of any sign's worth. τ = ID + r must give the true acceleration of the
-/// closed form, and τ = ID − r the acceleration of no robot.
+/// A second rod of another mass than the nominal 1 kg, as a payload of either sign. With τ = ID + r the acceleration must be the true one
+/// of the closed form. With τ = ID − r it must be that of no robot.
 fn sign(second_mass: f64) -> Case {
     let (q, v, tau) = ([0.3, -0.5], [0.7, 0.4], [1.0, -0.5]);
     Case {

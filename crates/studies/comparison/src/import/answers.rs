@@ -1,7 +1,11 @@
 //! The answer of a comparison for each robot and engine, in one line: a pure function of the rows.
 //!
-//! Four questions: does the engine load the file as it is written, has what it loaded the reference's M and τ, which body changed M or τ
-//! most, and what can be done about it.
+//! Four questions:
+//!
+//! - Does the engine load the file as it is written?
+//! - Has what it loaded the reference's M and τ?
+//! - Which body changed M or τ most?
+//! - What can be done about it?
 
 use super::bound;
 use featherbench_bench::measure::worst;

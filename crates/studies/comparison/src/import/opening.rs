@@ -1,5 +1,7 @@
-//! What the first page says of imports, one line for each robot and engine: whether the engine loads the file as it is written, whether M and
-//! τ are the same, the largest change, and what to do.
+//! What the first page says of imports, one line for each robot and engine.
+//!
+//! A line says whether the engine loads the file as it is written, and whether M and τ are the same. It gives the largest change, and what
+//! to do.
 
 use super::answers::{Answer, Loads, answers};
 use featherbench_report::numbers::{count, short};

@@ -24,10 +24,10 @@ fn four_bar() -> Result<Graph, BadGraph> {
     Graph::new(links(&["crank", "coupler", "rocker"]), joints)
 }
 
-/// What is wrong, what the graph says, and whether that is the refusal that is due.
+/// What is wrong, what the graph says, and whether that is the error that is due.
 type Malformed = (&'static str, Result<Graph, BadGraph>, fn(&BadGraph) -> bool);
 
-/// Graphs that are no robot, each with the refusal that is due.
+/// Graphs that are no robot, each with the error that is due.
 fn malformed() -> [Malformed; 5] {
     let two = || links(&["one", "two"]);
     [

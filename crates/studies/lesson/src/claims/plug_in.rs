@@ -29,7 +29,7 @@ fn regressors(joints: usize, seed: u64) -> Result<Vec<Number>, Failure> {
     let mut random = featherbench_robots::Random::named(seed, "lesson: regressor");
     let mut state = |count: usize| -> Vec<f64> { (0..count).map(|_| random.uniform(-1.0, 1.0)).collect() };
     let motion = state(3 * joints);
-    // The lab's φ has as many ones as joints.
+    // The lab's φ has n ones, for n joints.
     let long: Vec<f64> = motion.iter().copied().chain(vec![1.0; joints]).collect();
     let phi: Vec<f64> = motion.iter().copied().chain([1.0]).collect();
     let (theirs, ours) = (tiled(&long, joints), blocks(&phi, joints));

@@ -194,8 +194,8 @@ fn a_limit_that_is_none_is_not_shown() {
     assert!(!told.contains(table) && told.contains("The peak does not count: vectors make too little."), "{told}");
 }
 
-/// The first page says who is fastest by what counts and is no estimate, shows a median over robots for each engine and quantity, and tells
-/// in one sentence what does not count.
+/// The first page says who is fastest by what counts and is no estimate. It shows a median over robots for each engine and quantity. It
+/// tells in one sentence what does not count.
 #[test]
 fn the_first_page_says_who_is_fastest() {
     let row = |engine: &str, robot: &str, method: &str, metric: &str, value: f64| {

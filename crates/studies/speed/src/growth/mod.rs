@@ -170,8 +170,9 @@ impl Growth {
         (expected > patience as f64).then(|| Stop { size: next, tree: String::new(), reason, offered: false })
     }
 
-    /// Measures cells of one engine along their line, size after size: each up to its first size without an answer, or before the first that is
-    /// expected to take too long.
+    /// Measures cells of one engine along their line, size after size.
+    ///
+    /// Each cell goes up to its first size without an answer, or ends before the first that is expected to take too long.
     ///
     /// At a size all methods follow each other, so that an engine need not build the same robot for each.
     fn grow(&self, seed: u64, cells: &[Cell], line: &Line) -> Result<Vec<Grown>, NoAnswer> {

@@ -1,7 +1,10 @@
 //! Included files: one text in the place of all, and where each of its parts came from.
 //!
-//! The rules are MuJoCo's: what stands in the root of the included file takes the place of `<include file="…"/>`, whatever the root is
-//! called; a file is looked for in the folder of the first file, and then in that of the file that names it; no file is included twice.
+//! The rules are MuJoCo's:
+//!
+//! - What stands in the root of the included file takes the place of `<include file="…"/>`, whatever the root is called.
+//! - A file is looked for in the folder of the first file, and then in that of the file that names it.
+//! - No file is included twice.
 
 use super::error::At;
 use super::{MjcfError, MjcfProblem, Note, parse};
