@@ -73,7 +73,7 @@ def tables():
 @pytest.mark.parametrize(("theirs", "python", "rust"), tables(), ids=lambda name: name)
 def test_the_names_in_the_tables_exist(theirs, python, rust):
     assert hasattr(featherbench.Robot, python)
-    sources = "".join(path.read_text() for path in (ROOT / "crates" / "library" / "src").glob("*.rs"))
+    sources = "".join(path.read_text() for path in (ROOT / "crates" / "mechanics" / "rbd" / "src").glob("*.rs"))
     assert re.search(rf"pub fn {rust}\b", sources)
     package, *names = theirs.replace("pin.", "pinocchio.", 1).split(".")
     pytest.importorskip(package, reason=f"{package} is not installed")

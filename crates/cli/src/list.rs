@@ -10,7 +10,6 @@ use featherbench_bench::{Cell, Context, Engine, Factor, Planted, Robot, Suite};
 use featherbench_engines::{Featherbench, Limits};
 use featherbench_registry::Setup;
 use featherbench_robots::Family;
-use featherbench_study::Kernels;
 use serde_json::{Value, json};
 
 /// Prints what there is to run.
@@ -68,9 +67,9 @@ fn cells(root: &Root, loaded: &Loaded) -> Result<Vec<Cell>, Fail> {
     let engines: Vec<Box<dyn Engine>> = vec![Box::new(Featherbench::new())];
     let gates = root.read_gates()?;
     let context = Context { robots: &loaded.robots, engines: &engines, gates: &gates, seed: loaded.suite.seed };
-    let (kernels, reproduce) = (featherbench_engines::timed as Kernels, oracles::reproducer(root, Limits::default()));
+    let reproduce = oracles::reproducer(root, Limits::default());
     let measure = oracles::measurer(root)?;
-    let setup = Setup { suite: &loaded.suite, live: true, program: "", kernels, reproduce, measure };
+    let setup = Setup { suite: &loaded.suite, live: true, program: "", reproduce, measure };
     let studies = featherbench_registry::of_suite(&setup)?;
     Ok(studies.iter().flat_map(|study| study.plan(&context)).collect())
 }

@@ -54,7 +54,7 @@ const FLOORS: [Floor; 4] = [
             ("study", &["spatial", "results", "report", "bench"]),
             ("comparison", &[MECHANICS, "results", "report", "bench", "study"]),
             ("answers", &[MECHANICS, "results", "report", "bench", "study", "lesson"]),
-            ("speed", &[MECHANICS, "results", "report", "bench", "study", "comparison", "answers"]),
+            ("speed", &[MECHANICS, "results", "report", "bench", "kernels", "study", "comparison", "answers"]),
             ("reduction", &[MECHANICS, "results", "report", "bench", "study", "comparison"]),
             ("registry", &["results", "report", "bench", "study", "lesson", "comparison", "answers", "speed"]),
             // For tests alone.

@@ -156,7 +156,7 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
 fn studies(root: &Root, loaded: &Loaded, args: &RunArgs, program: &str) -> Result<Vec<Box<dyn Study>>, Fail> {
     let reproduce = oracles::reproducer(root, engines::limits(args));
     let measure = oracles::measurer(root)?;
-    let setup = Setup { suite: &loaded.suite, live: args.live, program, kernels: featherbench_engines::timed, reproduce, measure };
+    let setup = Setup { suite: &loaded.suite, live: args.live, program, reproduce, measure };
     let mut studies = featherbench_registry::of_suite(&setup)?;
     studies.retain(|study| !(args.no_timing && study.measures_time()));
     Ok(studies)

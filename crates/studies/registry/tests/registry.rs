@@ -14,7 +14,7 @@ fn suites() -> PathBuf {
 fn setup(suite: &Suite, live: bool) -> Setup<'_> {
     let refused = || NoAnswer::NotOffered("a test".into());
     let (reproduce, measure) = (Arc::new(move |_: &str, _: u64| Err(refused())), Arc::new(move |_: &Question| Err(refused())));
-    Setup { suite, live, program: "", kernels: |_| Vec::new(), reproduce, measure }
+    Setup { suite, live, program: "", reproduce, measure }
 }
 
 fn made(suite: &Suite, live: bool) -> Vec<&'static str> {

@@ -18,9 +18,6 @@ use std::sync::Arc;
 /// The study that a suite asks for, if it does; an error names file, line and key.
 pub type Made = Result<Option<Box<dyn Study>>, HarnessError>;
 
-/// The quantities and methods of our kernels on a robot.
-pub type Kernels = fn(&Robot) -> Vec<(Quantity, &'static str)>;
-
 /// Evaluates the reproduction of a name at the seeds from zero up to a number.
 pub type Reproduce = Arc<dyn Fn(&str, u64) -> Result<Vec<f64>, NoAnswer> + Send + Sync>;
 
@@ -49,8 +46,6 @@ pub struct Setup<'a> {
     pub live: bool,
     /// The hash of this program.
     pub program: &'a str,
-    /// Our kernels that are timed.
-    pub kernels: Kernels,
     /// Evaluates reproductions of known deviations.
     pub reproduce: Reproduce,
     /// Measures a method in a process of its own.

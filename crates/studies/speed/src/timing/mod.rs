@@ -90,7 +90,7 @@ fn of_suite(setup: &Setup) -> Made {
         let message = format!("[timing]: '{stranger}' is in best_of, but not in engines");
         return Err(HarnessError::Config { path: setup.suite.path().to_owned(), message });
     }
-    Ok(settings.map(|settings| Box::new(Timing { settings, kernels: setup.kernels }) as _))
+    Ok(settings.map(|settings| Box::new(Timing { settings, kernels: featherbench_kernels::timed }) as _))
 }
 
 /// Name of the side file with the raw samples in a run's folder.
