@@ -927,7 +927,7 @@ document.addEventListener("click", async (event) => {
 (() => {
   const round = (value) => value.toFixed(1);
 
-  // A direction in the picture's axes: right, down, towards the reader. The same as in crates/report/src/robot/project.rs.
+  // A direction in the picture's axes: right, down, towards the reader. The same as in crates/harness/report/src/robot/project.rs.
   function turned([x, y, z], turn, tilt) {
     const right = Math.cos(turn) * x - Math.sin(turn) * y, back = Math.sin(turn) * x + Math.cos(turn) * y;
     return [right, -Math.cos(tilt) * z - Math.sin(tilt) * back, Math.sin(tilt) * z - Math.cos(tilt) * back];
