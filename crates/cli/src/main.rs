@@ -83,17 +83,18 @@ mod run;
 use args::{Cli, Command, OraclesAction, RunArgs};
 use clap::{CommandFactory, Parser};
 use fail::Fail;
+use message::tell;
 use root::Root;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match dispatch(Cli::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(fail) => {
-            eprintln!("error: {fail}");
-            fail.code()
-        }
+    let ended = dispatch(Cli::parse());
+    let lost = message::lost().map(|error| Fail::input(format!("standard output cannot be written: {error}; what was said is lost")));
+    let fails: Vec<Fail> = ended.err().into_iter().chain(lost).collect();
+    for fail in &fails {
+        tell!("error: {fail}");
     }
+    fails.first().map_or(ExitCode::SUCCESS, Fail::code)
 }
 
 /// Finds the project's folder for the commands that need it: a run's folder can be looked at without.

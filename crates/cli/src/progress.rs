@@ -1,5 +1,6 @@
 //! Progress on standard error: a bar on a terminal, a line per phase elsewhere.
 
+use crate::message::tell;
 use featherbench_bench::run::Progress;
 use featherbench_bench::{Cell, Lost, Outcome};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -24,12 +25,12 @@ impl Bar {
 
 impl Progress for Bar {
     fn lost(&self, lost: &Lost) {
-        eprintln!("{lost}: its cells are evaluated again");
+        tell!("{lost}: its cells are evaluated again");
     }
 
     fn begin(&self, phase: &str, count: usize) {
         if !self.terminal {
-            eprintln!("{phase}: {count} cells");
+            tell!("{phase}: {count} cells");
             return;
         }
         self.with(|bar| {

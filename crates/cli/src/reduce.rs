@@ -5,7 +5,7 @@
 
 use crate::args::{ReduceArgs, RunArgs};
 use crate::fail::Fail;
-use crate::message::say;
+use crate::message::{say, tell};
 use crate::oracles;
 use crate::robots;
 use crate::root::Root;
@@ -89,7 +89,7 @@ fn robots_of(root: &Root, info: &RunInfo, folder: &Path) -> Result<Vec<Robot>, F
     let run = run.ok_or_else(|| Fail::input(format!("{}: its command is none of `run`: {}", folder.display(), info.command)))?;
     let loaded = robots::load(root, &run.suite, info.live, Some(info.seed), run.size)?;
     if loaded.hash != info.suite_hash {
-        eprintln!("note: {}: the suite {} is another one now", folder.display(), run.suite);
+        tell!("note: {}: the suite {} is another one now", folder.display(), run.suite);
     }
     Ok(loaded.robots)
 }

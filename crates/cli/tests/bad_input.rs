@@ -299,3 +299,21 @@ fn a_reader_that_leaves_early_is_no_error() {
         assert!(output.status.success() && !errors.contains("panic") && !errors.contains("pipe"), "{arguments:?}: {output:?}");
     }
 }
+
+/// A full disk: nothing panics, and the command says that its words are lost.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told() {
+    let full = || std::fs::File::options().write(true).open("/dev/full").unwrap();
+    let sandbox = Sandbox::new();
+    for arguments in [&["list"][..], &["gen", "chain:n=3"], &["plan", "smoke"], &["completions", "bash"], &["man"]] {
+        let output = sandbox.command(arguments).stdout(full()).output().unwrap();
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
+        assert!(errors.contains("standard output cannot be written") && !errors.contains("panic"), "{arguments:?}: {errors}");
+    }
+    // What was found stays the exit code where errors cannot be written.
+    let unknown = ["plan", "no-such-suite"];
+    let told = sandbox.command(&unknown).output().unwrap().status.code();
+    assert_eq!(sandbox.command(&unknown).stderr(full()).output().unwrap().status.code(), told);
+}

@@ -8,7 +8,7 @@ pub mod timeout;
 use crate::args::CompareArgs;
 use crate::compare::timeout::Patient;
 use crate::fail::Fail;
-use crate::message::say;
+use crate::message::{say, tell};
 use crate::oracles;
 use crate::oracles::engines::{self, Asked};
 use crate::progress::Bar;
@@ -55,7 +55,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let gates = root.read_gates()?;
     let hash = hashes(&files);
     let mut robots: Vec<Robot> = Vec::new();
-    eprintln!("starting {} …", engines.join(", "));
+    tell!("starting {} …", engines.join(", "));
     let limits = Limits { answer: Duration::from_secs(args.timeout), ..Limits::default() };
     let mut opened = engines::open(root, &Asked::live(root, &engines, limits))?;
     if let Some(missing) = opened.missing(&engines).first() {
@@ -136,7 +136,7 @@ fn kept<T>(result: Result<T, Fail>, bad: &mut Vec<Fail>) -> Option<T> {
     match result {
         Ok(good) => Some(good),
         Err(fail) => {
-            eprintln!("not compared: {fail}");
+            tell!("not compared: {fail}");
             bad.push(fail);
             None
         }

@@ -19,12 +19,12 @@ pub fn check(root: Option<&Root>, args: &CheckArgs) -> Result<(), Fail> {
     let terminal = std::io::stderr().is_terminal();
     let watch = |what: &str| {
         if terminal {
-            eprint!("\r\x1b[2K{what} …");
+            message::aside(&format!("\r\x1b[2K{what} …"));
         }
     };
     let conformance = check_program(&command, limits, &watch).map_err(Fail::Input)?;
     if terminal {
-        eprint!("\r\x1b[2K");
+        message::aside("\r\x1b[2K");
     }
     message::text(&text(&conformance, args.all));
     let wrong = conformance.of(Standing::Wrong).count();

@@ -3,6 +3,7 @@
 //! Beside what was built stands the hash of everything of the project's that it is made of; where that is another now, it is built again.
 
 use crate::fail::Fail;
+use crate::message::tell;
 use crate::oracles::spinner;
 use crate::root::Root;
 use featherbench_bench::{DescribedEngine, Engine, hash};
@@ -161,7 +162,7 @@ pub fn cargo_build(name: &str, workspace: &Path, target: &Path, arguments: &[&st
     if !product.is_file() {
         return Err(format!("cargo built something, but not {}; a CARGO_BUILD_TARGET would be why", product.display()));
     }
-    eprintln!("built {name} in {:.0} s: {}", start.elapsed().as_secs_f64(), product.display());
+    tell!("built {name} in {:.0} s: {}", start.elapsed().as_secs_f64(), product.display());
     Ok(())
 }
 

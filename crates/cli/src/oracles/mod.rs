@@ -12,7 +12,7 @@ pub mod record;
 
 use crate::args::InstallArgs;
 use crate::fail::Fail;
-use crate::message::say;
+use crate::message::{say, tell};
 use crate::oracles::compiled::Compiled;
 use crate::oracles::environment::{Alone, Environment};
 use crate::root::Root;
@@ -63,12 +63,12 @@ pub fn install_named(root: &Root, args: &InstallArgs) -> Result<(), Fail> {
             Start::Cargo { folder, program } => Compiled::program(root, engine, folder, program),
             Start::CargoLibrary { folder, library } => Compiled::library(root, engine, folder, library),
             Start::PythonAlone { module } => {
-                eprintln!("{} is installed: {}", engine.name, Alone::new(root, engine, &engines, module).install()?.display());
+                tell!("{} is installed: {}", engine.name, Alone::new(root, engine, &engines, module).install()?.display());
                 continue;
             }
             Start::Python { .. } | Start::Native(_) => continue,
         };
-        eprintln!("{} is built: {}", engine.name, compiled.install()?.display());
+        tell!("{} is built: {}", engine.name, compiled.install()?.display());
     }
     let (native, others): (Vec<&DescribedEngine>, Vec<_>) = named.into_iter().partition(|engine| engine.is_native());
     if !native.is_empty() || others.is_empty() || others.iter().any(|engine| engine.is_python()) {
@@ -80,7 +80,7 @@ pub fn install_named(root: &Root, args: &InstallArgs) -> Result<(), Fail> {
 /// Makes the environment unless it is there; what was downloaded before a break is used again.
 pub fn install(root: &Root) -> Result<PathBuf, Fail> {
     if let Some(python) = python(root) {
-        eprintln!("the reference engines are installed in {}", root.engines().display());
+        tell!("the reference engines are installed in {}", root.engines().display());
         return Ok(python);
     }
     let folder = root.engines();
@@ -97,14 +97,14 @@ pub fn install(root: &Root) -> Result<PathBuf, Fail> {
     bar.finish_and_clear();
     let stamp = stamp(root)?;
     ::featherbench_results::atomic_write(&folder.join("installed"), stamp.as_bytes())?;
-    eprintln!("installed the reference engines in {}", folder.display());
+    tell!("installed the reference engines in {}", folder.display());
     Ok(python)
 }
 
 /// Progress of something long; without a terminal, `announced` is printed once.
 pub fn spinner(announced: &str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
-        eprintln!("{announced}");
+        tell!("{announced}");
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new_spinner();

@@ -4,6 +4,7 @@
 //! CMake how to compile them, the versions of the compiler and of the packages, and the processor.
 
 use crate::fail::Fail;
+use crate::message::tell;
 use crate::oracles::{self, spinner};
 use crate::root::Root;
 use featherbench_bench::{DescribedEngine, Engine, Engines, Identity, Library, Start, hash};
@@ -53,18 +54,18 @@ pub fn install(root: &Root, engines: &Engines, named: &[&DescribedEngine]) -> Re
     };
     if let Err(reason) = install_tools(root) {
         // What is left out for want of them says so below.
-        eprintln!("{reason}");
+        tell!("{reason}");
     }
     let mut left_out = None;
     let mut built = 0;
     for engine in named {
         let Start::Native(library) = &engine.start else { continue };
         match Recipe::new(root, engine, library) {
-            Ok(recipe) if recipe.library.is_file() => eprintln!("{} is built: {}", engine.name, recipe.library.display()),
+            Ok(recipe) if recipe.library.is_file() => tell!("{} is built: {}", engine.name, recipe.library.display()),
             Ok(recipe) => recipe.make(root).map_err(|reason| missing(engine, reason))?,
             // With one compiler there is one of the engines that are built by two.
             Err(reason) => {
-                eprintln!("{} is left out: {reason}", engine.name);
+                tell!("{} is left out: {reason}", engine.name);
                 left_out = left_out.or_else(|| Some(missing(engine, "no native oracle can be built here".into())));
                 continue;
             }
@@ -132,7 +133,7 @@ impl<'a> Recipe<'a> {
             if let Some(source) =
                 line.split_once("] Building ").and_then(|(_, object)| object.rsplit('/').next()).filter(|_| bar.is_hidden())
             {
-                eprintln!("{name}: compiled {} ({:.0} s)", source.trim_end_matches(".o"), start.elapsed().as_secs_f64());
+                tell!("{name}: compiled {} ({:.0} s)", source.trim_end_matches(".o"), start.elapsed().as_secs_f64());
             }
         };
         let built = run(configure, see).and_then(|()| run(build, see));
@@ -142,7 +143,7 @@ impl<'a> Recipe<'a> {
         // What is left of a build is of no use to anybody.
         let _ = std::fs::remove_dir_all(&folder);
         moved.map_err(|reason| format!("{name}: {reason}"))?;
-        eprintln!("built {name} in {:.0} s: {}", start.elapsed().as_secs_f64(), self.library.display());
+        tell!("built {name} in {:.0} s: {}", start.elapsed().as_secs_f64(), self.library.display());
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::args::DiffArgs;
 use crate::fail::Fail;
-use crate::message::{self, say};
+use crate::message::{self, say, tell};
 use ::featherbench_results::{Apart, Change, Changed, Diff, ERROR_FACTOR, Row, RunInfo, TIME_NOISE, atomic_write, diff, read_run};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -17,7 +17,7 @@ pub fn compare(args: &DiffArgs) -> Result<(), Fail> {
     if let Some(path) = &args.html {
         atomic_write(path, featherbench_report::changes::between((&before, &old), (&after, &new)).as_bytes())?;
         // Standard output is one object with --json.
-        eprintln!("page: {}", path.display());
+        tell!("page: {}", path.display());
     }
     let mut found = diff(&old, &new);
     let apart = Apart::of(&before, &after, &mut found);

@@ -2,7 +2,7 @@
 
 use crate::args::{Format, GenArgs};
 use crate::fail::Fail;
-use crate::message;
+use crate::message::{self, tell};
 use crate::robots::robot_file;
 use crate::root::Root;
 use crate::{oracles, robots};
@@ -22,7 +22,7 @@ pub fn generate(root: &Root, args: &GenArgs) -> Result<(), Fail> {
             let base = if args.floating { Base::Floating } else { Base::Fixed };
             let options = Options { base, independent_mimics: args.independent_mimics, allow_massless: args.allow_massless };
             let (description, notes) = robots::import(file, &options)?;
-            notes.iter().for_each(|note| eprintln!("note: {}: {note}", file.display()));
+            notes.iter().for_each(|note| tell!("note: {}: {note}", file.display()));
             description
         }
         (Some(file), "mjcf") => compiled(root, file, args.floating)?,
@@ -33,9 +33,9 @@ pub fn generate(root: &Root, args: &GenArgs) -> Result<(), Fail> {
         }
         _ => family(args)?,
     };
-    description.warnings().iter().for_each(|warning| eprintln!("warning: {warning}"));
+    description.warnings().iter().for_each(|warning| tell!("warning: {warning}"));
     if !description.loops.is_empty() {
-        eprintln!("loops: {}", mobility(&description)?);
+        tell!("loops: {}", mobility(&description)?);
     }
     match exported(&description, args)? {
         Some(text) => match &args.out {
@@ -45,7 +45,7 @@ pub fn generate(root: &Root, args: &GenArgs) -> Result<(), Fail> {
         None => write(&description, args.out.as_deref()).map_err(|error| Fail::input(error.to_string()))?,
     }
     if let Some(path) = &args.out {
-        eprintln!("{}: {} ({} bodies, {} dofs)", path.display(), description.name, description.bodies.len(), description.nv());
+        tell!("{}: {} ({} bodies, {} dofs)", path.display(), description.name, description.bodies.len(), description.nv());
     }
     Ok(())
 }
@@ -101,11 +101,11 @@ pub fn compiled(root: &Root, path: &Path, floating: bool) -> Result<Description,
     let reading = robots::read_mjcf(&file, &robots::compiler(root)?)?;
     for note in &reading.notes {
         let about = note.about.as_ref().map_or_else(String::new, |about| format!("{about}: "));
-        eprintln!("note: {}: {about}{}", path.display(), note.text);
+        tell!("note: {}: {about}{}", path.display(), note.text);
     }
     if !reading.keyframes.is_empty() {
         let count = reading.keyframes.len();
-        eprintln!("note: {}: keyframes, which a description does not hold (`compare` takes them as states): {count}", path.display());
+        tell!("note: {}: keyframes, which a description does not hold (`compare` takes them as states): {count}", path.display());
     }
     Ok(reading.description)
 }
@@ -137,7 +137,7 @@ pub fn written(description: &Description, format: Format, lossy: bool) -> Result
         let way_out = if error.can_be_left_out() { "\n(--lossy leaves this out)" } else { "" };
         Fail::input(format!("{error}{way_out}"))
     })?;
-    losses.iter().for_each(|loss| eprintln!("left out: {loss}"));
+    losses.iter().for_each(|loss| tell!("left out: {loss}"));
     Ok(Some(text))
 }
 

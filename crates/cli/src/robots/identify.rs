@@ -2,6 +2,7 @@
 
 use crate::args::{Estimator, Format, IdentifyArgs, Term};
 use crate::fail::Fail;
+use crate::message::tell;
 use crate::message::{say, text};
 use crate::report::parquet;
 use crate::robots::{generate, robot_file};
@@ -54,7 +55,7 @@ fn robot(root: &dyn Fn() -> Result<Root, Fail>, args: &IdentifyArgs) -> Result<D
     }
     let base = if args.floating { UrdfBase::Floating } else { UrdfBase::Fixed };
     let (description, notes) = robots::import(path, &Options { base, independent_mimics: false, allow_massless: false })?;
-    notes.iter().for_each(|note| eprintln!("note: {}: {note}", path.display()));
+    notes.iter().for_each(|note| tell!("note: {}: {note}", path.display()));
     Ok(description)
 }
 
@@ -169,7 +170,7 @@ fn write(linear: &LinearModel, found: &Identified, out: &Path, lossy: bool) -> R
             }
         }
     }
-    eprintln!("{}: {} with {} new numbers", out.display(), robot.name, changes(linear.description(), &robot).len());
+    tell!("{}: {} with {} new numbers", out.display(), robot.name, changes(linear.description(), &robot).len());
     Ok(changes(linear.description(), &robot))
 }
 

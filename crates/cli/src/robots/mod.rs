@@ -7,6 +7,7 @@ pub mod robot_file;
 pub mod uncertainty;
 
 use crate::fail::Fail;
+use crate::message::tell;
 use crate::oracles;
 use crate::root::Root;
 use ::featherbench_results::ModelOrigin;
@@ -54,7 +55,7 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>, size: Optio
     let mut names = HashSet::new();
     let left_out = parsed.robots.iter().filter(|entry| entry.only_live && !live).count();
     if left_out > 0 {
-        eprintln!("note: {left_out} of the suite's robots need --live and are left out");
+        tell!("note: {left_out} of the suite's robots need --live and are left out");
     }
     for entry in parsed.robots.iter().filter(|entry| live || !entry.only_live) {
         for (base, named) in entry.bases() {
@@ -129,7 +130,7 @@ pub fn named(root: impl Fn() -> Result<Root, Fail>, name: &str) -> Result<Descri
         Some("json") => return read_model(path),
         Some("urdf") => {
             let (description, notes) = import(path, &Options::default())?;
-            notes.iter().for_each(|note| eprintln!("note: {name}: {note}"));
+            notes.iter().for_each(|note| tell!("note: {name}: {note}"));
             return Ok(description);
         }
         _ => {}

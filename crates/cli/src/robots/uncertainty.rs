@@ -2,7 +2,7 @@
 
 use crate::args::{Propagation, UncertaintyArgs};
 use crate::fail::Fail;
-use crate::message::say;
+use crate::message::{say, tell};
 use crate::robots;
 use crate::root::Root;
 use featherbench_bench::measure::{ratio, worst};
@@ -164,7 +164,7 @@ pub fn propagate(root: impl Fn() -> Result<Root, Fail>, args: &UncertaintyArgs) 
         say!("damping and dry friction are part of it, because one of them is uncertain");
     }
     let route = if response.route() == Route::Affine { "precomputed columns" } else { "recursion" };
-    eprintln!(
+    tell!(
         "{} by {route}: {evaluations} evaluations in {seconds:.3} s, {:.3e} per second",
         args.method.name(),
         evaluations as f64 / seconds

@@ -1,6 +1,7 @@
 //! HyperQueue: its environment, installed on first use, and the process that gives it tasks.
 
 use crate::fail::Fail;
+use crate::message::tell;
 use crate::oracles::environment::Environment;
 use crate::oracles::{pins, spinner};
 use crate::root::Root;
@@ -127,7 +128,7 @@ impl Drop for Driver {
 /// Progress by tasks; without a terminal, one line.
 fn bar(tasks: usize) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
-        eprintln!("{tasks} tasks");
+        tell!("{tasks} tasks");
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::with_draw_target(Some(tasks as u64), ProgressDrawTarget::stderr());

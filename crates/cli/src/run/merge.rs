@@ -2,6 +2,7 @@
 
 use crate::args::{MergeArgs, RunArgs};
 use crate::fail::Fail;
+use crate::message::tell;
 use crate::root::Root;
 use crate::run;
 use crate::run::shard;
@@ -37,7 +38,7 @@ pub fn merge(root: &Root, args: &MergeArgs) -> Result<(), Fail> {
     if !(args.keep_good || complete) || merged.parts.is_empty() {
         return Err(error_of(&refused, gaps));
     }
-    refused.iter().map(ToString::to_string).chain(gaps).for_each(|what| eprintln!("note: left out: {what}"));
+    refused.iter().map(ToString::to_string).chain(gaps).for_each(|what| tell!("note: left out: {what}"));
 
     let mut run = Run::open(&args.out, Opening::New, info)?;
     merged.write(&plan, &run.folder)?;

@@ -9,6 +9,7 @@ pub mod sweep;
 
 use crate::args::RunArgs;
 use crate::fail::Fail;
+use crate::message::tell;
 use crate::oracles;
 use crate::oracles::engines::{self, Asked, Opened};
 use crate::oracles::external::External;
@@ -112,7 +113,7 @@ pub fn drawings(info: &RunInfo, rows: &[Row], robots: &[Robot]) -> BTreeMap<Stri
     let (drawings, left_out) = drawing::of_run(robots, &first);
     if left_out > 0 {
         let (drawn, most) = (drawings.len(), Drawing::MOST_BYTES);
-        eprintln!("note: the report draws {drawn} robots; with {left_out} more, the drawings would have over {most} bytes");
+        tell!("note: the report draws {drawn} robots; with {left_out} more, the drawings would have over {most} bytes");
     }
     drawings
 }
@@ -174,10 +175,10 @@ const TOLD: usize = 5;
 /// Tells what is unusual about the robots.
 pub fn tell_notes(info: &RunInfo) {
     let notes = || info.robots.iter().flat_map(|robot| robot.notes.iter().map(move |note| (&robot.name, note)));
-    notes().take(TOLD).for_each(|(name, note)| eprintln!("note: {name}: {note}"));
+    notes().take(TOLD).for_each(|(name, note)| tell!("note: {name}: {note}"));
     let more = notes().count().saturating_sub(TOLD);
     if more > 0 {
-        eprintln!("note: {more} more notes on robots are in the report");
+        tell!("note: {more} more notes on robots are in the report");
     }
 }
 

@@ -5,6 +5,7 @@
 
 use crate::args::{MergeArgs, RunArgs, SweepArgs};
 use crate::fail::Fail;
+use crate::message::tell;
 use crate::root::Root;
 use crate::run;
 use crate::run::hyperqueue::{self, Driver, Task, Wanted};
@@ -84,7 +85,7 @@ pub fn sweep(root: &Root, args: &SweepArgs) -> Result<(), Fail> {
             break;
         }
         if round > 0 {
-            eprintln!("note: {} of {} tasks are not finished and are started again", numbers.len(), sweep.shards);
+            tell!("note: {} of {} tasks are not finished and are started again", numbers.len(), sweep.shards);
         }
         for &number in &numbers {
             // What is there is damaged: without the file the shard is an unfinished one, whose good outcomes are kept.
@@ -99,8 +100,8 @@ pub fn sweep(root: &Root, args: &SweepArgs) -> Result<(), Fail> {
         let driver = Driver::start(root, &python)?;
         journal(&folder, &json!({ "round": round, "tasks": numbers, "driver": driver.id(), "time": now() }))?;
         match driver.drive(&wanted) {
-            Ok(failed) => failed.iter().for_each(|(name, why)| eprintln!("note: {name}: {why}")),
-            Err(why) => eprintln!("note: the process that gives HyperQueue its tasks: {why}"),
+            Ok(failed) => failed.iter().for_each(|(name, why)| tell!("note: {name}: {why}")),
+            Err(why) => tell!("note: the process that gives HyperQueue its tasks: {why}"),
         }
     }
     let left = sweep.unfinished(&folder);
@@ -155,7 +156,7 @@ fn open(root: &Root, args: &SweepArgs, whole: &RunArgs) -> Result<(PathBuf, Swee
     let text = serde_json::to_string_pretty(&sweep).map_err(|error| Fail::input(error.to_string()))?;
     atomic_write(&folder.join(SWEEP_NAME), text.as_bytes())?;
     let largest = plan::totals(&plan, &plan.cut(sweep.shards), sweep.shards).into_iter().map(|(_, seconds)| seconds).max_by(f64::total_cmp);
-    eprintln!(
+    tell!(
         "{} cells of about {:.1} s in {} tasks, the largest of about {:.1} s, {} of them alone",
         plan.cells.len(),
         plan.seconds(),

@@ -21,7 +21,8 @@ fn main() -> ExitCode {
     match said.and_then(|text| print(&text).map_err(|error| format!("standard output: {error}"))) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
-            eprintln!("error: {message}");
+            // Its reader may be gone.
+            let _ = writeln!(io::stderr(), "error: {message}");
             ExitCode::from(2)
         }
     }
