@@ -2,8 +2,8 @@
 
 use crate::Outcome;
 use crate::support::{Ended, Sandbox, project};
-use featherbench_constrained::library::Ladder;
-use featherbench_constrained::{Kkt, Mechanism};
+use featherbench_constrained::systems::Ladder;
+use featherbench_constrained::{Constrained, Kkt, Mechanism};
 use std::path::Path;
 use std::process::Command;
 
@@ -87,7 +87,7 @@ const FOUR_BAR: &str = r#"<mujoco model="four_bar"><compiler angle="radian"/><wo
  <inertial pos="0 0 -.5" mass="1" diaginertia=".08333333333333333 .08333333333333333 1e-12"/></body>
 </worldbody><equality><connect name="pin" body1="crank1" body2="coupler" anchor="0 0 -1"/></equality></mujoco>"#;
 
-/// A four-bar in MJCF moves as the library's. Written as MJCF again, its loops are the same to the bit. A comparison is of its tree, and
+/// A four-bar in MJCF moves as that of `systems`. Written as MJCF again, its loops are the same to the bit. A comparison is of its tree, and
 /// says so.
 pub fn loops(_: &Path) -> Outcome {
     let sandbox = Sandbox::new();
@@ -108,13 +108,11 @@ pub fn loops(_: &Path) -> Outcome {
     let robot = read(&file);
     let mechanism = Mechanism::of(&robot).unwrap();
     let ladder = Ladder { gravity: 9.81, ..Ladder::default() };
-    let kkt = Kkt::default();
-    let mut dynamics = mechanism.dynamics(&kkt).unwrap();
+    let mut dynamics = Constrained::new(&mechanism.model, &mechanism.constraints).unwrap();
     for (theta, rate) in [(0.5, 0.0), (-1.0, 2.0), (0.1, -1.0)] {
-        let mut found = [f64::NAN; 3];
-        dynamics.acceleration(&ladder.spread(theta), &ladder.spread(rate), &[0.0; 3], &mut found).unwrap();
+        let found = dynamics.run(&ladder.spread(theta), &ladder.spread(rate), &[0.0; 3], &Kkt::default()).unwrap().acceleration;
         let error = (found[0] - ladder.acceleration(theta)).abs();
-        // As in the tests of the library. The thickness of the rods does not turn.
+        // As in the tests of files with loops. The thickness of the rods does not turn.
         assert!(error <= 1e-11 * (1.0 + rate * rate), "{error:e} at {theta}");
     }
 

@@ -212,11 +212,6 @@ impl Graph {
         self.joints.len() - self.links.len()
     }
 
-    /// Degrees of freedom of the tree.
-    pub fn tree_freedom(&self) -> usize {
-        self.joints.iter().filter(|joint| !joint.cut).map(|joint| joint.freedom).sum()
-    }
-
     /// Grübler's count: `Σ freedom − d·loops`, d = 6 in space and 3 in a plane. It can be negative, and it is only a count.
     pub fn gruebler(&self, motion: usize) -> i64 {
         let freedom: usize = self.joints.iter().map(|joint| joint.freedom).sum();

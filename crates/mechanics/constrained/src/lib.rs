@@ -1,22 +1,21 @@
 //! Robots with loops: the graph, constraints on its spanning tree, and constrained dynamics.
 //!
 //! - [`Graph`] has links and joints with loops: spanning tree, cut joints, fundamental [`Cycle`]s, Grübler's count. [`Mechanism`] is a
-//!   description with the loops that close it: its own, or [`LoopJoint`]s beside it. [`Mobility`] is the truth that the count misses.
+//!   description with its loops. [`Mobility`] is the truth that the count misses.
 //! - [`Constraint`] holds points, frames, distances, gears and joints that follow others. [`Rows`] are residual φ, Jacobian J and
 //!   bias J̇v of all of them at a state.
-//! - [`Dynamics`] is what a graph's state accelerates by: [`Tree`] alone, or [`Closed`] by its constraints.
 //! - [`delassus`] computes `G = J M⁻¹ Jᵀ` by three routes.
 //! - [`Constrained`] forms the equations of motion, and a [`Method`] solves them: [`Kkt`], [`RangeSpace`], [`Proximal`]. Redundant rows are
 //!   found by rank, with a tolerance that is stated. Each [`Solution`] has its residuals.
 //! - [`accelerations`] solves the equations in double-double arithmetic: the truth for the methods, and for engines.
 //! - [`stabilise`] keeps loops closed in time, and measures their drift.
-//! - [`library`] has robots with loops whose motion is known.
+//! - [`systems`] has robots with loops whose motion is known.
 //!
 //! Conventions: units are SI. Rows have the axes of the first frame of their constraint. Multipliers act on the second frame as they are
 //! named, and opposite on the first. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms* (2008).
 //!
 //! ```
-//! use featherbench_constrained::{Constrained, Kkt, library::Ladder};
+//! use featherbench_constrained::{Constrained, Kkt, systems::Ladder};
 //! // A parallelogram four-bar: one loop, of five rows of which two are independent.
 //! let ladder = Ladder::default();
 //! let four_bar = ladder.mechanism()?;
@@ -30,31 +29,27 @@
 mod attachment;
 mod constraint;
 pub mod delassus;
-mod dynamics;
 mod error;
-mod extended;
 mod graph;
 mod laws;
-pub mod library;
 mod malformed;
 mod mechanism;
 mod mobility;
 mod rows;
-mod singular;
 mod solve;
 pub mod stabilise;
+pub mod systems;
+mod truth;
 
 pub use attachment::Attachment;
 pub use constraint::{Constraint, Constraints, Law};
-pub use dynamics::{Closed, Dynamics, Tree};
 pub use error::Error;
-pub use extended::{REDUNDANT, accelerations};
 pub use featherbench_model::LoopMotion;
 pub use graph::{BadGraph, Cycle, Edge, Graph};
 pub use laws::Row;
 pub use malformed::{BadConstraint, Defect};
-pub use mechanism::{BadMechanism, LoopJoint, Mechanism};
+pub use mechanism::{BadMechanism, Mechanism};
 pub use mobility::{Mobility, RANK};
 pub use rows::Rows;
-pub use singular::singular_values;
 pub use solve::{CONSISTENCY, Constrained, Equations, Kkt, Method, Outcome, Proximal, RangeSpace, Solution};
+pub use truth::{REDUNDANT, accelerations};

@@ -3,12 +3,11 @@
 //! The rank counts the singular values of J above `1e-10` of the largest. A closed loop leaves 10⁻¹³ of a dependent row. The shortest
 //! independent rows of a mechanism near its singularity are longer than 10⁻⁸. Rank is counted at each configuration. The generic mobility
 //! is the least of all: at a singular configuration J loses rank, and gives more instantaneous freedom than there is motion.
-//! Source: C. Gosselin and J. Angeles (1990) for singularities of loops; singular values: `singular.rs`.
+//! Source: C. Gosselin and J. Angeles (1990) for singularities of loops.
 
 use crate::constraint::Constraints;
 use crate::error::Error;
-use crate::rows::Rows;
-use crate::singular::singular_values;
+use crate::rows::{Rows, expect_finite};
 use featherbench_model::Model;
 use featherbench_spatial::largest;
 use nalgebra::DMatrix;
@@ -36,7 +35,7 @@ impl Mobility {
     /// [`Error`]: `q` does not fit or is not finite, or a weld is half a turn off.
     ///
     /// ```
-    /// use featherbench_constrained::{Mobility, library::Ladder};
+    /// use featherbench_constrained::{Mobility, systems::Ladder};
     /// let ladder = Ladder::default();
     /// let four_bar = ladder.mechanism()?;
     /// let at = |angle: f64| Mobility::at(&four_bar.model, &four_bar.constraints, &ladder.spread(angle));
@@ -49,40 +48,18 @@ impl Mobility {
         let dofs = model.topology.nv();
         let mut rows = Rows::new(constraints);
         rows.run(model, constraints, q, &vec![0.0; dofs])?;
-        let singular_values = singular_values(&DMatrix::from_row_slice(constraints.rows(), dofs, rows.jacobian()));
+        expect_finite("Jacobian", rows.jacobian())?;
+        let jacobian = DMatrix::from_row_slice(constraints.rows(), dofs, rows.jacobian());
+        let mut singular_values = if jacobian.is_empty() { Vec::new() } else { jacobian.singular_values().as_slice().to_vec() };
+        singular_values.sort_by(|a, b| b.total_cmp(a));
         let cut = singular_values.first().map_or(0.0, |largest| RANK * largest);
         let rank = singular_values.iter().filter(|value| **value > cut).count();
         let residual = largest(rows.residuals());
         Ok(Self { dofs, rank, singular_values, residual })
     }
 
-    /// The mobility at the configuration where J has the largest rank: the generic one, if one of the configurations is not singular.
-    /// `None` without configurations.
-    ///
-    /// # Errors
-    /// As [`Mobility::at`].
-    pub fn generic<'q>(
-        model: &Model<f64>,
-        constraints: &Constraints,
-        configurations: impl IntoIterator<Item = &'q [f64]>,
-    ) -> Result<Option<Self>, Error> {
-        let mut best: Option<Self> = None;
-        for q in configurations {
-            let found = Self::at(model, constraints, q)?;
-            if best.as_ref().is_none_or(|best| found.rank > best.rank) {
-                best = Some(found);
-            }
-        }
-        Ok(best)
-    }
-
     /// Instantaneous degrees of freedom: dofs − rank.
     pub fn freedom(&self) -> usize {
         self.dofs - self.rank
-    }
-
-    /// Rows that the others make superfluous.
-    pub fn redundant(&self, constraints: &Constraints) -> usize {
-        constraints.rows() - self.rank
     }
 }

@@ -3,11 +3,10 @@
 mod common;
 mod delassus;
 mod errors;
-mod extended;
 mod files;
 mod graph;
 mod laws;
-mod library;
 mod solve;
 mod squeezer;
 mod stabilise;
+mod truth;

@@ -44,28 +44,18 @@ fn agree(what: &str, model: &Model<f64>, constraints: &Constraints, q: &[f64]) {
 }
 
 #[test]
-fn three_routes_agree_on_every_joint() {
+fn three_routes_agree() {
     let mut cases = 0;
-    for spec in EVERY_JOINT {
+    let robots = ["humanoid", "quadruped", "hand", "chain:n=30", "tree:n=40", "binary_tree:depth=5"].map(|spec| (spec, 3, 9));
+    for (spec, count, seed) in EVERY_JOINT.map(|spec| (spec, 12, 7)).into_iter().chain(robots) {
         let model = model(spec);
-        let states = StateBatch::random(&model, 12, 7);
+        let states = StateBatch::random(&model, count, seed);
         for k in 0..states.count() {
             agree(&format!("{spec} {k}"), &model, &every_law(&model, k as u64), states.q(k));
             cases += 1;
         }
     }
-    assert_eq!(cases, 24);
-}
-
-#[test]
-fn three_routes_agree_on_robots() {
-    for spec in ["humanoid", "quadruped", "hand", "chain:n=30", "tree:n=40", "binary_tree:depth=5"] {
-        let model = model(spec);
-        let states = StateBatch::random(&model, 3, 9);
-        for k in 0..states.count() {
-            agree(&format!("{spec} {k}"), &model, &every_law(&model, k as u64), states.q(k));
-        }
-    }
+    assert_eq!(cases, 42);
 }
 
 /// A point mass that slides along x: G = 1/m, by hand.

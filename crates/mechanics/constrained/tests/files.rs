@@ -1,21 +1,12 @@
-//! Robots with loops from files: the four-bar of the library out of JSON and URDF, and dynamics on graphs with and without loops.
+//! Robots with loops from files: the four-bar of `systems` out of JSON and URDF.
 
 use crate::common::assert_within;
-use featherbench_constrained::library::{Biped, Bricard, Ladder, Squeezer};
-use featherbench_constrained::{
-    Attachment, BadMechanism, Dynamics, Error, Kkt, Law, LoopMotion, Mechanism, Mobility, Proximal, RangeSpace, Tree,
-};
-use featherbench_dynamics::Aba;
+use featherbench_constrained::systems::{Biped, Bricard, Ladder, Squeezer};
+use featherbench_constrained::{Attachment, BadMechanism, Constrained, Kkt, Law, LoopMotion, Mechanism, Mobility};
 use featherbench_formats::{neutral, urdf};
-use featherbench_model::{Description, Loop, LoopEnd, LoopKind, Model, Placement};
+use featherbench_model::{Description, Loop, LoopEnd, LoopKind, Placement};
 use featherbench_robots::{Family, Random};
 use featherbench_spatial::largest;
-
-fn acceleration(dynamics: &mut dyn Dynamics, q: &[f64], v: &[f64], tau: &[f64]) -> Vec<f64> {
-    let mut found = vec![f64::NAN; v.len()];
-    dynamics.acceleration(q, v, tau, &mut found).unwrap_or_else(|error| panic!("{}: {error}", dynamics.name()));
-    found
-}
 
 /// The largest error against the closed form, at random states on the loop.
 fn assert_moves_as(ladder: &Ladder, mechanism: &Mechanism, what: &str) {
@@ -25,9 +16,9 @@ fn assert_moves_as(ladder: &Ladder, mechanism: &Mechanism, what: &str) {
         let (theta, rate) = (random.uniform(-1.2, 1.2), random.uniform(-2.0, 2.0));
         let (q, v) = (ladder.spread(theta), ladder.spread(rate));
         let due = ladder.spread(ladder.acceleration(theta));
-        let kkt = Kkt::default();
-        let found = acceleration(&mut *mechanism.dynamics(&kkt).unwrap(), &q, &v, &vec![0.0; v.len()]);
-        // As in the tests of the library: the bars' moments differ by some 10 N·m, and the worst angle divides by cos 1.2.
+        let mut dynamics = Constrained::new(&mechanism.model, &mechanism.constraints).unwrap();
+        let found = dynamics.run(&q, &v, &vec![0.0; v.len()], &Kkt::default()).unwrap().acceleration;
+        // The bars' moments differ by some 10 N·m, and the worst angle divides by cos 1.2.
         assert_within(&format!("θ̈ of {what}"), largest(found.iter().zip(&due).map(|(a, due)| a - due)), 1e-11 * (1.0 + rate * rate));
         cases += 1;
     }
@@ -36,7 +27,7 @@ fn assert_moves_as(ladder: &Ladder, mechanism: &Mechanism, what: &str) {
 
 /// The description is written, read, and moves as the closed form says.
 #[test]
-fn a_four_bar_in_json_moves_as_the_library_s() {
+fn a_four_bar_in_json_moves_as_the_closed_form() {
     for ladder in [Ladder::default(), Ladder { windows: 3, crank: 0.7, coupler: 1.3, crank_mass: 2.0, ..Ladder::default() }] {
         let text = neutral::to_string(&ladder.description()).unwrap();
         let read = neutral::parse(&text, "four-bar.json").unwrap_or_else(|error| panic!("{error}"));
@@ -52,7 +43,7 @@ fn a_four_bar_in_json_moves_as_the_library_s() {
 
 /// In URDF a parallelogram is two mimics: the coupler turns back by what its crank turns, and the other crank turns as far.
 #[test]
-fn a_four_bar_of_urdf_mimics_moves_as_the_library_s() {
+fn a_four_bar_of_urdf_mimics_moves_as_the_closed_form() {
     let ladder = Ladder::default();
     // Uniform rods of 1 kg and 1 m: 1/12 kg·m² about the centre, and nothing about their own axis.
     let link = |name: &str, com: &str, inertia: [&str; 3]| {
@@ -123,59 +114,8 @@ fn every_kind_becomes_its_constraint() {
     assert_eq!(constraints.list().iter().map(|constraint| &constraint.law).collect::<Vec<_>>(), due.iter().collect::<Vec<_>>());
 }
 
-/// Without loops a graph's dynamics are the articulated-body algorithm's, to the bit; a tied one's are each method's.
 #[test]
-fn dynamics_of_a_graph_without_loops_are_those_of_the_tree() {
-    let mut cases = 0;
-    for spec in ["joints:kind=all,base=free", "humanoid", "binary_tree:depth=4"] {
-        let robot = Family::parse(spec).unwrap().generate().unwrap();
-        let mechanism = Mechanism::of(&robot).unwrap();
-        let model = Model::<f64>::build(&robot).unwrap();
-        let states = featherbench_robots::StateBatch::random(&model, 3, 5);
-        for k in 0..states.count() {
-            let (q, v, tau) = (states.q(k), states.v(k), states.tau(k));
-            let mut due = vec![0.0; states.nv];
-            Aba::new(&model.topology).run(&model, q, v, tau, None, &mut due).unwrap();
-            assert_eq!(acceleration(&mut *mechanism.dynamics(&Kkt::default()).unwrap(), q, v, tau), due, "{spec}");
-            cases += 1;
-        }
-    }
-    assert_eq!(cases, 9);
-}
-
-#[test]
-fn each_method_is_a_dynamics_of_the_same_graph() {
-    let ladder = Ladder::default();
-    let mechanism = ladder.mechanism().unwrap();
-    let (kkt, range, proximal) = (Kkt::default(), RangeSpace::default(), Proximal::default());
-    let methods: [(&dyn featherbench_constrained::Method, f64); 3] = [(&kkt, 1e-12), (&range, 1e-10), (&proximal, 1e-7)];
-    for (method, tolerance) in methods {
-        let mut dynamics = mechanism.dynamics(method).unwrap();
-        assert_eq!(dynamics.name(), method.name());
-        let found = acceleration(&mut *dynamics, &ladder.spread(0.5), &ladder.spread(0.0), &[0.0; 3]);
-        // The tolerances of the methods, as in the tests of the library.
-        assert_within(method.name(), (found[0] - ladder.acceleration(0.5)).abs(), tolerance);
-    }
-    // A tied robot falls otherwise than its tree.
-    let free = acceleration(&mut Tree::new(&mechanism.model), &ladder.spread(0.5), &ladder.spread(0.0), &[0.0; 3]);
-    assert!((free[0] - ladder.acceleration(0.5)).abs() > 0.1);
-}
-
-#[test]
-fn bad_states_and_graphs_are_refused_by_name() {
-    let mechanism = Ladder::default().mechanism().unwrap();
-    let mut out = [0.0; 3];
-    let kkt = Kkt::default();
-    for dynamics in [&mut *mechanism.dynamics(&kkt).unwrap(), &mut Tree::new(&mechanism.model) as &mut dyn Dynamics] {
-        let zero = [0.0; 3];
-        let nan = [0.0, f64::NAN, 0.0];
-        assert_eq!(dynamics.acceleration(&nan, &zero, &zero, &mut out), Err(Error::NotFinite { what: "configuration q", index: 1 }));
-        assert_eq!(dynamics.acceleration(&zero, &nan, &zero, &mut out), Err(Error::NotFinite { what: "velocity v", index: 1 }));
-        assert_eq!(dynamics.acceleration(&zero, &zero, &nan, &mut out), Err(Error::NotFinite { what: "joint forces tau", index: 1 }));
-        assert!(matches!(dynamics.acceleration(&zero, &zero, &zero, &mut out[..2]), Err(Error::Dimension(_))));
-        assert!(matches!(dynamics.acceleration(&zero[..2], &zero, &zero, &mut out), Err(Error::Dimension(_))));
-    }
-
+fn bad_loops_are_refused_by_name() {
     // A loop joint of the name of a joint of the tree.
     let mut robot = Ladder::default().description();
     robot.loops[0].name = robot.bodies[0].name.clone();

@@ -4,8 +4,7 @@ use crate::common::{EVERY_JOINT, assert_within, every_law, model, slack};
 use featherbench_constrained::{Constraint, Constraints, Law, LoopMotion, Rows};
 use featherbench_model::integrate;
 use featherbench_robots::StateBatch;
-use featherbench_spatial::Dual;
-use featherbench_spatial::largest;
+use featherbench_spatial::{Dual, largest};
 
 /// Sums of some hundred products of numbers up to ten, each rounded: 100·10²·ε, and a hundred times that for powers of coordinates.
 const ROUNDING: f64 = 1e-11;
@@ -42,33 +41,6 @@ fn residual_jacobian_and_bias_agree_on_every_joint() {
         }
     }
     assert!(draws > 800, "{draws}");
-}
-
-/// The same against central differences, which know nothing of duals: error h²/6·φ''' + ε/h ≈ 1e-9 at h = 1e-5.
-#[test]
-fn the_jacobian_is_that_of_central_differences() {
-    let model = model(EVERY_JOINT[1]);
-    let constraints = every_law(&model, 5);
-    let states = StateBatch::random(&model, 3, 4);
-    for k in 0..states.count() {
-        let (q, zero) = (states.q(k), vec![0.0; model.topology.nv()]);
-        let mut rows = Rows::new(&constraints);
-        for dof in 0..model.topology.nv() {
-            let mut residuals = |h: f64| {
-                let mut step = zero.clone();
-                step[dof] = h;
-                rows.run(&model, &constraints, &integrate(&model.topology, q, &step).unwrap(), &zero).unwrap();
-                rows.residuals().collect::<Vec<_>>()
-            };
-            let (ahead, behind) = (residuals(1e-5), residuals(-1e-5));
-            rows.run(&model, &constraints, q, &zero).unwrap();
-            for row in 0..constraints.rows() {
-                let due = (ahead[row] - behind[row]) / 2e-5;
-                let found = rows.jacobian_row(row)[dof];
-                assert_within(constraints.name_of_row(row), (found - due).abs() / (1.0 + due.abs()), 1e-8);
-            }
-        }
-    }
 }
 
 /// A loop joint leaves free what it says: frames that differ by its motion have no residual, and no other motion is free.

@@ -1,13 +1,12 @@
 //! Andrews' squeezer: bodies and loops against the equations of the literature, by two integrators.
 
 use crate::common::assert_within;
-use featherbench_constrained::library::Squeezer;
 use featherbench_constrained::stabilise::{Projection, Simulation, Stabilisation};
+use featherbench_constrained::systems::Squeezer;
 use featherbench_constrained::{Constrained, Kkt, Rows};
 use featherbench_dynamics::integrate::{DormandPrince, Tolerance};
 use featherbench_model::{Axis, JointKind, Topology};
-use featherbench_spatial::largest;
-use featherbench_spatial::{Dual, Real};
+use featherbench_spatial::{Dual, Real, largest};
 use nalgebra::{DMatrix, DVector};
 
 /// The positions of point E by four ways, less each other: the six constraints of the literature, in q = β, Θ, γ, δ, Φ, ε, Ω.

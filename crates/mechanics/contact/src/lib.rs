@@ -7,7 +7,7 @@
 //! - [`Residuals`] measure how far any impulses are from the governing equations.
 //! - [`impact`] has the impact laws of Newton, Poisson, Stronge and Moreau, and sequences of simultaneous impacts.
 //! - [`Grounded`] is a robot over level ground: its contact problem at a state, and one step in time.
-//! - [`library`] has problems with known answers; [`rate`] predicts and fits how fast first-order methods converge.
+//! - [`systems`] has problems with known answers; [`rate`] predicts and fits how fast first-order methods converge.
 //!
 //! Conventions: SI units. Each contact has its own frame; its rows are the normal first, then one or two tangents. A positive normal
 //! velocity separates, a positive normal impulse pushes. Impulses act on the body whose velocity counts positive.
@@ -29,13 +29,13 @@ mod extended;
 pub mod file;
 mod grounded;
 pub mod impact;
-pub mod library;
 mod malformed;
 mod problem;
 pub mod rate;
 mod residual;
 mod solution;
 pub mod solver;
+pub mod systems;
 
 pub use grounded::{Grounded, GroundedError, Stepped, Touch};
 pub use malformed::{Defect, Malformed};

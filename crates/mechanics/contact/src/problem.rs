@@ -2,6 +2,7 @@
 
 use crate::extended;
 use crate::malformed::{Defect, Malformed};
+use featherbench_spatial::DoubleDouble;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -177,7 +178,7 @@ impl Problem {
         }
         let (delassus, free) =
             extended::delassus(&mechanism).ok_or_else(|| Malformed::new("mechanism.mass", Defect::NotPositiveDefinite))?;
-        let (delassus, free) = (delassus.to_f64(), DVector::from_iterator(rows, free.iter().map(|x| x.to_f64())));
+        let (delassus, free) = (delassus.map(DoubleDouble::to_f64), DVector::from_iterator(rows, free.iter().map(|x| x.to_f64())));
         crate::malformed::square(&delassus, "mechanism.jacobian", rows)?;
         let before = free.clone();
         Ok(Self { name: name.into(), level, contacts, offsets, delassus, free, before, mechanism: Some(mechanism) })

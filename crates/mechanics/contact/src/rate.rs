@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 /// None if a diagonal entry is not positive.
 ///
 /// ```
-/// use featherbench_contact::{library::Stack, rate};
+/// use featherbench_contact::{rate, systems::Stack};
 /// // A body of 10 kg on one of 1 kg: R/(1 + R).
 /// let rate = rate::gauss_seidel(&Stack::two(10.0).problem()?).unwrap();
 /// assert!((rate - 10.0 / 11.0).abs() < 1e-14);

@@ -70,7 +70,7 @@ pub enum Certificate {
 /// What is known when a solver ends.
 ///
 /// ```
-/// use featherbench_contact::library::PainleveRod;
+/// use featherbench_contact::systems::PainleveRod;
 /// use featherbench_contact::{Certificate, Lemke, Outcome, Solver};
 /// let rod = PainleveRod { friction: 1.5, ..PainleveRod::default() };
 /// match Lemke::default().solve(&rod.problem()?)?.outcome {

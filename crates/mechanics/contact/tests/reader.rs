@@ -1,6 +1,6 @@
 //! The file of a contact problem: what it says comes back, and what is wrong is named with its place.
 
-use featherbench_contact::library::{self, Kane};
+use featherbench_contact::systems::{self, Kane};
 use featherbench_contact::{Contact, Friction, Level, Problem, file};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -8,18 +8,18 @@ use proptest::test_runner::RngSeed;
 
 #[test]
 fn every_case_comes_back() {
-    for problem in library::all().unwrap() {
+    for problem in systems::all().unwrap() {
         assert_eq!(file::parse(&file::to_text(&problem), "case.json").unwrap(), problem, "{}", problem.name());
     }
     let before = Kane::default().problem().unwrap().with_before(nalgebra::DVector::from_vec(vec![-1.0, 0.5])).unwrap();
     assert_eq!(file::parse(&file::to_text(&before), "before.json").unwrap(), before);
 }
 
-/// The files of `datasets/contact` hold the cases of the library. Numbers may differ by a few ulps: sines differ between platforms.
+/// The files of `datasets/contact` hold the problems of `systems`. Numbers may differ by a few ulps: sines differ between platforms.
 #[test]
-fn the_dataset_is_the_library() {
+fn the_dataset_holds_the_systems() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../datasets/contact");
-    let cases = library::all().unwrap();
+    let cases = systems::all().unwrap();
     for problem in &cases {
         let kept = file::read(folder.join(format!("{}.json", problem.name()))).unwrap();
         assert_eq!((kept.name(), kept.level(), kept.contacts().len()), (problem.name(), problem.level(), problem.contacts().len()));
@@ -106,7 +106,7 @@ fn mechanisms_are_checked() {
     }
 }
 
-/// Numbers that are not finite cannot come by a file; they can by the library.
+/// Numbers that are not finite cannot come by a file; they can by the fields.
 #[test]
 fn numbers_are_finite() {
     let build = |matrix: f64, free: f64, friction: f64| {

@@ -5,7 +5,7 @@
 //! - [`Assembly`] attaches rods to a robot or to the world, and [`Continuum`] is what comes out.
 //! - [`Solver`] has the dynamics, [`Motion`] is the right-hand side of integrators, [`equilibrium`] the statics, [`modes`] the vibrations.
 //! - [`passivity`] judges matrices; [`rigid_limit`] compares a stiff rod with the rigid tree.
-//! - [`known`] has the answers, [`fit`](fit()) orders and prefactors, [`library`] ready cases.
+//! - [`known`] has the answers, [`fit`](fit()) orders and prefactors, [`systems`] ready cases.
 //!
 //! # One concept
 //!
@@ -16,11 +16,11 @@
 //! Conventions: SI units; a rod lies along x of its placement; strains are ξ = [κ; ε] in the axes of the section.
 //!
 //! ```
-//! use featherbench_continua::{Element, Hinges, Rod, Strain, known, library, modes};
+//! use featherbench_continua::{Element, Hinges, Rod, Strain, known, modes, systems};
 //! // First frequency of a cantilever of 20 links: β₁² (1 − 0.229/n²).
 //! let rod = Rod::textbook(1.0, 1.0, 1.0)?;
 //! let element = Element::Links { count: 20, hinges: Hinges::Middle, strains: vec![Strain::BendZ] };
-//! let (beam, _) = library::cantilever(&rod, &element)?;
+//! let (beam, _) = systems::cantilever(&rod, &element)?;
 //! let first = modes(&beam, &beam.rest(), &[])?.frequencies()[0];
 //! assert!((first / known::cantilever_root(0).powi(2) - 1.0).abs() < 0.25 / 400.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -35,7 +35,6 @@ mod element;
 pub mod examples;
 mod fit;
 pub mod known;
-pub mod library;
 mod material;
 mod modes;
 mod passivity;
@@ -43,6 +42,7 @@ pub mod quadrature;
 mod rigid;
 mod solver;
 mod statics;
+pub mod systems;
 mod tangent;
 
 pub use assembly::{Assembly, Tip};

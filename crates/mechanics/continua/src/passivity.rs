@@ -35,10 +35,10 @@ impl Passivity {
 /// Judges the matrices M, K and D; they are square and of one size. NaN in a matrix is NaN in the answer, which is then not passive.
 ///
 /// ```
-/// use featherbench_continua::{Basis, Element, Rod, Strain, collocation, library, mass_matrix, passivity};
+/// use featherbench_continua::{Basis, Element, Rod, Strain, collocation, mass_matrix, passivity, systems};
 /// let rod = Rod::textbook(1.0, 1.0, 1.0)?;
 /// let element = Element::Ritz { basis: Basis::Monomials(3), strains: vec![Strain::BendZ] };
-/// let (beam, _) = library::cantilever(&rod, &element)?;
+/// let (beam, _) = systems::cantilever(&rod, &element)?;
 /// let mass = mass_matrix(&beam, &beam.rest())?;
 /// assert!(passivity(&mass, &beam.stiffness_matrix(), &beam.damping_matrix()).passive());
 /// let (mass, stiffness) = collocation(&rod, Basis::Monomials(3))?;

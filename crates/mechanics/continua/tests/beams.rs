@@ -1,6 +1,6 @@
 //! Beams that several tests use.
 
-use featherbench_continua::{Basis, Element, Hinges, Load, Rod, Settings, Status, Strain, equilibrium, library};
+use featherbench_continua::{Basis, Element, Hinges, Load, Rod, Settings, Status, Strain, equilibrium, systems};
 
 /// Bending about z alone.
 pub const BEND: [Strain; 1] = [Strain::BendZ];
@@ -24,7 +24,7 @@ pub fn ritz(basis: Basis) -> Element {
 
 /// The place of the tip under a dead force α across the rod.
 pub fn tip_under(element: &Element, alpha: f64) -> [f64; 3] {
-    let (beam, tip) = library::cantilever(&rod(), element).unwrap();
+    let (beam, tip) = systems::cantilever(&rod(), element).unwrap();
     let load = Load::force(tip.body, tip.placement.translation, [0.0, alpha, 0.0]);
     let found = equilibrium(&beam, &[load], &Settings::default()).unwrap();
     assert_eq!(found.status, Status::Converged, "{element:?}");

@@ -4,8 +4,8 @@ use crate::beams::{links, ritz, rod, sections};
 use featherbench_constrained::{Constrained, Kkt, Mechanism, Rows};
 use featherbench_continua::known::cantilever_root;
 use featherbench_continua::{
-    Assembly, Basis, Continuum, Element, Hinges, Load, Motion, Rod, Solver, Strain, energies, generalized, library, mass_matrix, modes,
-    momentum, rigid_limit,
+    Assembly, Basis, Continuum, Element, Hinges, Load, Motion, Rod, Solver, Strain, energies, generalized, mass_matrix, modes, momentum,
+    rigid_limit, systems,
 };
 use featherbench_dynamics::integrate::{DormandPrince, Tolerance};
 use featherbench_dynamics::{Aba, forward_dynamics};
@@ -20,7 +20,7 @@ fn bending() -> [Element; 3] {
 
 /// The positive frequencies of a rod on a free hub in its plane.
 fn on_hub(element: &Element, mass: f64) -> Vec<f64> {
-    let (assembly, _) = library::on_free_hub(mass, mass, &rod(), element).unwrap();
+    let (assembly, _) = systems::on_free_hub(mass, mass, &rod(), element).unwrap();
     let hub = assembly.build().unwrap();
     let squares = modes(&hub, &hub.rest(), &[]).unwrap().squares;
     // Six free motions have no frequency: their squares are roundings.
@@ -42,7 +42,7 @@ fn first_root(f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
 #[test]
 fn a_heavy_hub_is_a_wall() {
     for element in bending() {
-        let (clamped, _) = library::cantilever(&rod(), &element).unwrap();
+        let (clamped, _) = systems::cantilever(&rod(), &element).unwrap();
         let wall = modes(&clamped, &clamped.rest(), &[]).unwrap().frequencies()[0];
         let mut before = f64::INFINITY;
         for mass in [1e2, 1e4, 1e6] {
@@ -74,7 +74,7 @@ fn a_body_at_the_tip_lowers_the_frequency_as_known() {
         for (element, tolerance) in [(ritz(Basis::Hermite(8)), 1e-5), (sections(32), 5e-4), (links(32, Hinges::Middle), 5e-4)] {
             let mut assembly = Assembly::new(Default::default());
             let tip = assembly.attach("rod", &rod(), &element, None, Placement::default()).unwrap();
-            library::carry(&mut assembly, &tip, mu, 0.0);
+            systems::carry(&mut assembly, &tip, mu, 0.0);
             let beam = assembly.build().unwrap();
             let w = modes(&beam, &beam.rest(), &[]).unwrap().frequencies()[0];
             // Errors of the elements: β⁴/1440 n⁴ and about 1/4n².
@@ -89,8 +89,8 @@ fn stiff_rods_are_rigid_to_1e_10_until_rounding_says_no() {
     for (count, element) in
         [1, 4, 16].into_iter().flat_map(|n| [(n, links(n, Hinges::Middle)), (n, sections(n)), (n, ritz(Basis::Hermite(n)))])
     {
-        let (mut assembly, tip) = library::on_free_hub(1.0, 0.2, &rod(), &element).unwrap();
-        library::carry(&mut assembly, &tip, 0.5, 0.1);
+        let (mut assembly, tip) = systems::on_free_hub(1.0, 0.2, &rod(), &element).unwrap();
+        systems::carry(&mut assembly, &tip, 0.5, 0.1);
         let (q, v) = ([0.1, 0.2, -0.3, 0.0, 0.0, 0.6, 0.8], [0.1, 0.2, 0.3, 0.4, -0.5, 0.6]);
         let tau = [1.0, -2.0, 0.5, 0.3, 0.7, -0.4];
         for factor in [1e3, 1e6, 1e9, 1e12] {
@@ -128,7 +128,7 @@ fn a_flying_rod_has_the_momentum_of_its_loads() {
         Element::Sections { count: 2, strains: vec![Strain::BendZ, Strain::BendY, Strain::Twist], points: 2 },
     ] {
         // The hub is a thin slice of the rod.
-        let (assembly, tip) = library::on_free_hub(0.1, 0.1, &rod, &element).unwrap();
+        let (assembly, tip) = systems::on_free_hub(0.1, 0.1, &rod, &element).unwrap();
         let flying = assembly.build().unwrap();
         let (force, moment) = ([8.0, 1.0, 0.5], [0.0, 4.0, -8.0]);
         let at_tip = Load { moment, ..Load::force(tip.body, tip.placement.translation, force) };

@@ -2,7 +2,7 @@
 
 use crate::beams::{links, rod};
 use featherbench_continua::{
-    Assembly, Basis, Defect, Element, Hinges, Load, Material, Rod, Section, Settings, SolveError, Strain, equilibrium, generalized, library,
+    Assembly, Basis, Defect, Element, Hinges, Load, Material, Rod, Section, Settings, SolveError, Strain, equilibrium, generalized, systems,
 };
 use featherbench_model::Placement;
 use nalgebra::DMatrix;
@@ -75,7 +75,7 @@ fn elements_without_parts_are_refused() {
 
 #[test]
 fn loads_on_no_body_and_states_of_another_size_are_errors() {
-    let (beam, _) = library::cantilever(&rod(), &links(3, Hinges::Middle)).unwrap();
+    let (beam, _) = systems::cantilever(&rod(), &links(3, Hinges::Middle)).unwrap();
     // Body 0 is the half element that is part of the wall.
     for body in [0, 99] {
         let load = Load::force(body, [0.0; 3], [1.0, 0.0, 0.0]);

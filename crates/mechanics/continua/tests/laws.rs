@@ -7,14 +7,14 @@ use featherbench_continua::known::{
     links_tip_prefactor, lumped_axial, sections_frequency_prefactor, sections_tip_prefactor, string_frequency_prefactor, tip_ratio,
 };
 use featherbench_continua::{
-    Basis, Element, Hinges, Load, Masses, Material, Rod, Section, Settings, Status, Strain, equilibrium, fit, generalized, library, modes,
+    Basis, Element, Hinges, Load, Masses, Material, Rod, Section, Settings, Status, Strain, equilibrium, fit, generalized, modes, systems,
 };
 use nalgebra::DMatrix;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 fn frequencies(element: &Element) -> Vec<f64> {
-    let (beam, _) = library::cantilever(&rod(), element).unwrap();
+    let (beam, _) = systems::cantilever(&rod(), element).unwrap();
     modes(&beam, &beam.rest(), &[]).unwrap().frequencies()
 }
 
@@ -161,7 +161,7 @@ fn the_elastica_is_met_with_the_order_of_each_element() {
 fn a_string_of_masses_has_the_laguerre_zeros() {
     for n in [1, 2, 3, 8, 20] {
         let length = n as f64 * 0.3;
-        let (string, _) = library::hanging_string(n, Masses::Ends, length, 2.0, 9.81).unwrap();
+        let (string, _) = systems::hanging_string(n, Masses::Ends, length, 2.0, 9.81).unwrap();
         let squares = modes(&string, &string.rest(), &[]).unwrap().squares;
         for (square, zero) in squares.iter().zip(laguerre_zeros(n)) {
             let known = 9.81 / (length / n as f64) * zero;
@@ -173,7 +173,7 @@ fn a_string_of_masses_has_the_laguerre_zeros() {
 #[test]
 fn strings_come_to_the_bessel_zeros() {
     let error = |n: usize, masses: Masses, k: usize| {
-        let (string, _) = library::hanging_string(n, masses, 1.0, 1.0, 1.0).unwrap();
+        let (string, _) = systems::hanging_string(n, masses, 1.0, 1.0, 1.0).unwrap();
         modes(&string, &string.rest(), &[]).unwrap().squares[k] / (bessel_zero(k) / 2.0).powi(2) - 1.0
     };
     assert_law("masses", &[16, 32, 64, 96], |n| error(n, Masses::Ends, 0), 1.0, 2.0, -0.5);
@@ -221,7 +221,7 @@ fn shear_extension_and_twist_are_those_of_timoshenko() {
         let sections = Element::Sections { count: n, strains: strains.clone(), points: 2 };
         [(n, sections), (n, Element::Links { count: n, hinges: Hinges::Middle, strains: strains.clone() })]
     }) {
-        let (beam, tip) = library::cantilever(&rod, &element).unwrap();
+        let (beam, tip) = systems::cantilever(&rod, &element).unwrap();
         // Small: terms of the second order are below the tolerance.
         let (force, moment) = (1e-9, 1e-9);
         let under = |load: Load| {

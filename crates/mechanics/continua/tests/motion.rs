@@ -3,7 +3,7 @@
 use crate::beams::{links, rod};
 use featherbench_continua::{
     Assembly, Basis, Continuum, Element, Hinges, Load, Masses, Material, Motion, Rod, Section, Solver, Strain, collocation, energies,
-    library, mass_matrix, momentum, passivity,
+    mass_matrix, momentum, passivity, systems,
 };
 use featherbench_dynamics::integrate::{DormandPrince, ImplicitMidpoint, Tolerance};
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Placement};
@@ -36,8 +36,8 @@ fn elements() -> Vec<Element> {
 
 /// A rod of this element that is clamped to a free hub and carries a body.
 fn on_hub(element: &Element, damping: f64) -> Continuum {
-    let (mut assembly, tip) = library::on_free_hub(1.5, 0.3, &soft(damping), element).unwrap();
-    library::carry(&mut assembly, &tip, 0.4, 0.05);
+    let (mut assembly, tip) = systems::on_free_hub(1.5, 0.3, &soft(damping), element).unwrap();
+    systems::carry(&mut assembly, &tip, 0.4, 0.05);
     assembly.build().unwrap()
 }
 

@@ -3,7 +3,7 @@
 use crate::beams::{links, rod, sections, tip_under};
 use featherbench_continua::known::{elastica, lumped_axial};
 use featherbench_continua::{
-    Assembly, Element, Hinges, Load, Rod, Settings, Status, Strain, equilibrium, judge, library, newton, residual, tangent_stiffness,
+    Assembly, Element, Hinges, Load, Rod, Settings, Status, Strain, equilibrium, judge, newton, residual, systems, tangent_stiffness,
 };
 use featherbench_model::{Description, Placement};
 use std::f64::consts::PI;
@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 fn a_moment_of_2_pi_closes_a_circle_of_one_element() {
     for (count, strains) in [(1, vec![Strain::BendZ]), (3, vec![Strain::BendZ]), (1, Strain::ALL.to_vec())] {
         let element = Element::Sections { count, strains, points: 2 };
-        let (beam, tip) = library::cantilever(&rod(), &element).unwrap();
+        let (beam, tip) = systems::cantilever(&rod(), &element).unwrap();
         let load = Load::moment(tip.body, [0.0, 0.0, 2.0 * PI]);
         // A dead moment on a rod that may leave the plane makes it buckle sideways first: these dofs are held.
         let planar = |dof: &usize| beam.topology().nv() % 6 != 0 || dof % 6 == Strain::BendZ.index();
@@ -25,7 +25,7 @@ fn a_moment_of_2_pi_closes_a_circle_of_one_element() {
         assert!((place.rotation.to_array()[0] - 1.0).abs() < 1e-14);
     }
     // A chain of links is a polygon, and closes too: a turn of 2π in all.
-    let (beam, tip) = library::cantilever(&rod(), &links(6, Hinges::Middle)).unwrap();
+    let (beam, tip) = systems::cantilever(&rod(), &links(6, Hinges::Middle)).unwrap();
     let found = equilibrium(&beam, &[Load::moment(tip.body, [0.0, 0.0, 2.0 * PI])], &Settings::default()).unwrap();
     assert!(found.s.iter().all(|angle| (angle - PI / 3.0).abs() < 1e-13));
 }
@@ -49,7 +49,7 @@ fn large_loads_come_to_the_elastica() {
 fn newton_without_load_steps_is_judged() {
     let alpha = 10.0;
     // The elastica itself has one equilibrium there: √10 is below 3.2, the smallest K(k) + F(φ₁, k). Four links have more.
-    let (beam, tip) = library::cantilever(&rod(), &links(4, Hinges::Middle)).unwrap();
+    let (beam, tip) = systems::cantilever(&rod(), &links(4, Hinges::Middle)).unwrap();
     let load = [Load::force(tip.body, tip.placement.translation, [0.0, alpha, 0.0])];
     let settings = Settings { iterations: 200, ..Settings::default() };
     let branch = equilibrium(&beam, &load, &settings).unwrap();
@@ -92,7 +92,7 @@ fn newton_without_load_steps_is_judged() {
 fn a_pressed_column_buckles_at_euler_s_load() {
     // P = π² EI/4L². With mid hinges k = EI/h: the column of springs buckles at 4 sin²(π/4n) EI/h², by the difference equation.
     let n = 6;
-    let (column, tip) = library::cantilever(&rod(), &links(n, Hinges::Middle)).unwrap();
+    let (column, tip) = systems::cantilever(&rod(), &links(n, Hinges::Middle)).unwrap();
     let euler = 4.0 * (PI / (4.0 * n as f64)).sin().powi(2) * (n * n) as f64;
     assert!((euler * 4.0 / (PI * PI) - 1.0).abs() < 0.01);
     assert!((euler - lumped_axial(n, 0, 1.0, 1.0).powi(2)).abs() < 1e-12, "the same difference equation as that of a bar");
@@ -106,7 +106,7 @@ fn a_pressed_column_buckles_at_euler_s_load() {
 
 #[test]
 fn a_search_that_cannot_end_says_where_it_stopped() {
-    let (beam, tip) = library::cantilever(&rod(), &links(8, Hinges::Middle)).unwrap();
+    let (beam, tip) = systems::cantilever(&rod(), &links(8, Hinges::Middle)).unwrap();
     let load = [Load::force(tip.body, tip.placement.translation, [0.0, 50.0, 0.0])];
     let found = equilibrium(&beam, &load, &Settings { steps: 2, first_step: 0.01, ..Settings::default() }).unwrap();
     assert!(matches!(found.status, Status::CapReached { load, residual } if load < 0.1 && residual > 1.0));
@@ -136,7 +136,7 @@ fn the_tangent_is_the_derivative_and_symmetric() {
     for element in
         [Element::Sections { count: 2, strains: strains.clone(), points: 2 }, Element::Links { count: 3, hinges: Hinges::Start, strains }]
     {
-        let (beam, tip) = library::cantilever(&rod(), &element).unwrap();
+        let (beam, tip) = systems::cantilever(&rod(), &element).unwrap();
         let loads = [Load::force(tip.body, [0.0, 0.1, 0.0], [0.3, -0.2, 0.5])];
         let nv = beam.topology().nv();
         let s: Vec<f64> = (0..nv).map(|k| 0.2 * (1.0 + k as f64).sin()).collect();

@@ -22,7 +22,7 @@ pub struct Gradient<T> {
 /// The gradient of φ(x(end), t*₁, t*₂, …) from its derivatives: `of_state` has n numbers, `of_times` one per event.
 ///
 /// ```
-/// use featherbench_hybrid::library::BouncingBall;
+/// use featherbench_hybrid::systems::BouncingBall;
 /// use featherbench_hybrid::{Settings, Start, adjoint, simulate};
 /// let (theta, start) = ([9.81, 0.8], Start { mode: 0, time: 0.0, state: vec![1.0, 0.0, 0.0] });
 /// let run = simulate(&BouncingBall, &theta, &start, 0.7, &Settings::default())?;
@@ -49,9 +49,7 @@ pub fn adjoint<S: Hybrid, T: Real>(
     let (mut state, mut parameters) = (of_state.to_vec(), vec![T::zero(); theta.len()]);
     for record in run.records.iter().rev() {
         match record {
-            Record::Step(step) => {
-                method.pull(system, theta, step.mode, step.time, step.length, &step.state, &mut state, &mut parameters);
-            }
+            Record::Step(step) => method.pull(system, theta, step, &mut state, &mut parameters),
             Record::Event(index) => {
                 let saltation = Saltation::of(system, theta, &run.events[*index])?;
                 state = saltation.pull(&state, of_times[*index], &mut parameters);

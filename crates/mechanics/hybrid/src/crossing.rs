@@ -19,8 +19,7 @@ use crate::error::HybridError;
 use crate::extrapolation::Extrapolation;
 use crate::settings::Settings;
 use crate::system::{Bound, Hybrid};
-use featherbench_spatial::Real;
-use featherbench_spatial::largest;
+use featherbench_spatial::{Real, largest};
 
 /// The cells of a step: a guard that turns more often than once in an eighth of a step escapes; the dense output, of degree 5, turns four
 /// times in all.

@@ -13,6 +13,7 @@
 //! Source: E. Hairer, S. P. Nørsett and G. Wanner, *Solving Ordinary Differential Equations I* (1993), §II.9, with the dense
 //! output of ODEX. Cost: κ(2κ − 1) evaluations of f, and one at the start; dense output and its check add four.
 
+use crate::run::Step;
 use crate::system::{Hybrid, seeded};
 use featherbench_spatial::{Dual, Real};
 
@@ -73,18 +74,8 @@ impl<T: Real> Extrapolation<T> {
 
     /// The transpose of the derivative of a step times a gradient: λ after the step becomes that before it, and the gradient of the
     /// parameters is added to `parameters`.
-    #[expect(clippy::too_many_arguments, reason = "a step of a system, and two gradients")]
-    pub(crate) fn pull<S: Hybrid>(
-        &self,
-        system: &S,
-        theta: &[T],
-        mode: usize,
-        t: T,
-        h: T,
-        x: &[T],
-        gradient: &mut [T],
-        parameters: &mut [T],
-    ) {
+    pub(crate) fn pull<S: Hybrid>(&self, system: &S, theta: &[T], step: &Step<T>, gradient: &mut [T], parameters: &mut [T]) {
+        let &Step { mode, time: t, length: h, state: ref x } = step;
         let states = x.len();
         let mut first = vec![T::zero(); states];
         system.flow(mode, t, x, theta, &mut first);

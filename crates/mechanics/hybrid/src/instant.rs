@@ -7,9 +7,8 @@
 use crate::error::{HybridError, expect_finite};
 use crate::run::{Event, Settled, Simultaneous};
 use crate::settings::Settings;
-use crate::system::{Bound, Direction, Hybrid};
-use featherbench_spatial::Real;
-use featherbench_spatial::largest;
+use crate::system::{Bound, Direction, Hybrid, expect_mode};
+use featherbench_spatial::{Real, largest};
 
 /// A moment of a run.
 #[derive(Clone)]
@@ -63,9 +62,7 @@ pub(crate) fn fire<S: Hybrid, T: Real>(
     let after = bound.reset(guard, now.time, &now.state);
     expect_finite("reset", now.time, &after)?;
     let (mode, target) = (now.mode, bound.target(guard, now.time, &after));
-    if target >= system.modes() {
-        return Err(HybridError::Mode { mode: target, modes: system.modes() });
-    }
+    expect_mode(system, target)?;
     now.mode = target;
     let before = std::mem::replace(&mut now.state, after.clone());
     Ok(Event { time: now.time, correction, mode, guard, target, before, after, rate })

@@ -4,7 +4,7 @@
 //! - [`simulate`] runs it. Events are located in time; a [`Run`] says how it ended: finished, [`Status::Zeno`], [`Status::Grazing`],
 //!   [`Status::Ambiguous`] (several guards at once whose order matters), or at a cap.
 //! - [`Saltation`] is the derivative of an event; [`sensitivity`] that of a whole run, forward; [`adjoint`] is its transpose.
-//! - [`library`] has systems with closed forms.
+//! - [`systems`] has systems with closed forms.
 //! - [`penalty`] is the law by which a spring-damper ground approaches the rigid one.
 //!
 //! Measured errors: `docs/kernels/hybrid.md`.
@@ -17,7 +17,6 @@ mod dense;
 mod error;
 mod extrapolation;
 mod instant;
-pub mod library;
 pub mod penalty;
 mod run;
 mod saltation;
@@ -25,6 +24,7 @@ mod sensitivity;
 mod settings;
 mod simulate;
 mod system;
+pub mod systems;
 mod zeno;
 
 pub use adjoint::{Gradient, adjoint};

@@ -58,10 +58,6 @@ impl Hybrid for PenaltyBall {
         2
     }
 
-    fn guards(&self, _: usize) -> usize {
-        1
-    }
-
     fn direction(&self, mode: usize, _: usize) -> Direction {
         if mode == 0 { Direction::Falling } else { Direction::Rising }
     }
@@ -73,10 +69,6 @@ impl Hybrid for PenaltyBall {
 
     fn guard<T: Real>(&self, _: usize, _: usize, _: T, x: &[T], _: &[T]) -> T {
         x[0]
-    }
-
-    fn reset<T: Real>(&self, _: usize, _: usize, _: T, x: &[T], _: &[T], after: &mut [T]) {
-        after.copy_from_slice(x);
     }
 
     fn target(&self, mode: usize, _: usize, _: f64, _: &[f64], _: &[f64]) -> usize {

@@ -1,7 +1,7 @@
 //! What a run gives: how it ended, its events, and every step and event in order.
 
 use crate::error::HybridError;
-use crate::system::Hybrid;
+use crate::system::{Hybrid, expect_mode};
 use crate::zeno::Tail;
 
 /// Where a run begins.
@@ -167,16 +167,12 @@ impl<T> Run<T> {
             true => Ok(()),
             false => Err(HybridError::Size { what, expected: system.states(), found }),
         };
-        let mode = |mode: usize| match mode < system.modes() {
-            true => Ok(()),
-            false => Err(HybridError::Mode { mode, modes: system.modes() }),
-        };
         states("state", self.state.len())?;
         for record in &self.records {
             match record {
                 Record::Step(step) => {
                     states("state of a step", step.state.len())?;
-                    mode(step.mode)?;
+                    expect_mode(system, step.mode)?;
                 }
                 Record::Event(index) if *index >= self.events.len() => {
                     return Err(HybridError::Size { what: "events", expected: index + 1, found: self.events.len() });

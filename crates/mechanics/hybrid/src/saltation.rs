@@ -17,7 +17,7 @@
 
 use crate::error::{HybridError, expect};
 use crate::run::Event;
-use crate::system::{Bound, Hybrid, constants, seeded};
+use crate::system::{Bound, Hybrid, constants, expect_mode, moving, seeded};
 use featherbench_spatial::{Dual, Real};
 use nalgebra::DMatrix;
 
@@ -34,7 +34,7 @@ impl<T: Real> Saltation<T> {
     /// The saltation of a guard that is met with the state `before`; `target` is the mode after.
     ///
     /// ```
-    /// use featherbench_hybrid::{Saltation, library::BouncingBall};
+    /// use featherbench_hybrid::{Saltation, systems::BouncingBall};
     /// let ball = Saltation::new(&BouncingBall, &[9.81, 0.8], 0, 0, 0, 0.0, &[0.0, -4.0, 0.0])?.matrix();
     /// assert!((ball[(0, 0)] + 0.8).abs() < 1e-15 && (ball[(1, 0)] - 1.8 * 9.81 / 4.0).abs() < 1e-14);
     /// # Ok::<(), featherbench_hybrid::HybridError>(())
@@ -54,11 +54,8 @@ impl<T: Real> Saltation<T> {
         expect("state", before, system.states())?;
         expect("parameters", theta, system.parameters())?;
         expect("time", &[time], 1)?;
-        for mode in [mode, target] {
-            if mode >= system.modes() {
-                return Err(HybridError::Mode { mode, modes: system.modes() });
-            }
-        }
+        expect_mode(system, mode)?;
+        expect_mode(system, target)?;
         if guard >= system.guards(mode) {
             return Err(HybridError::Size { what: "guards", expected: guard + 1, found: system.guards(mode) });
         }
@@ -126,11 +123,6 @@ impl<T: Real> Saltation<T> {
         }
         (0..gradient.len()).map(of).collect()
     }
-}
-
-/// Numbers that move with the given rates.
-fn moving<T: Real>(numbers: &[T], rates: &[T]) -> Vec<Dual<T>> {
-    numbers.iter().zip(rates).map(|(number, rate)| Dual::new(*number, *rate)).collect()
 }
 
 fn reset<S: Hybrid, T: Real>(system: &S, mode: usize, guard: usize, t: T, x: &[T], theta: &[T]) -> Vec<T> {

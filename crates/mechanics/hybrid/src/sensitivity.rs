@@ -8,7 +8,7 @@ use crate::error::{HybridError, expect};
 use crate::extrapolation::Extrapolation;
 use crate::run::{Record, Run, Step};
 use crate::saltation::Saltation;
-use crate::system::{Hybrid, constants};
+use crate::system::{Hybrid, constants, moving};
 use featherbench_spatial::{Dual, Real};
 
 /// The derivative of a run with respect to n states at its start and p parameters.
@@ -23,7 +23,7 @@ pub struct Sensitivity<T> {
 /// The derivative of a run.
 ///
 /// ```
-/// use featherbench_hybrid::library::BouncingBall;
+/// use featherbench_hybrid::systems::BouncingBall;
 /// use featherbench_hybrid::{Settings, Start, sensitivity, simulate};
 /// // One bounce of a ball from rest: t₁ = √(2h/g), so ∂t₁/∂h = t₁/(2h).
 /// let (theta, start) = ([9.81, 0.8], Start { mode: 0, time: 0.0, state: vec![1.0, 0.0, 0.0] });
@@ -74,9 +74,6 @@ fn push<S: Hybrid, T: Real>(
     deviation: &[T],
     parameters: &[T],
 ) -> Vec<T> {
-    let moving = |numbers: &[T], rates: &[T]| -> Vec<Dual<T>> {
-        numbers.iter().zip(rates).map(|(number, rate)| Dual::new(*number, *rate)).collect()
-    };
     let (x, theta) = (moving(&step.state, deviation), moving(theta, parameters));
     let (time, length) = (Dual::constant(step.time), Dual::constant(step.length));
     let mut first = constants(&step.state);

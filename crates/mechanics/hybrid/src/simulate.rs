@@ -16,14 +16,14 @@ use crate::extrapolation::{Extrapolation, Trial};
 use crate::instant::{Moment, both_orders, fire, met, value_and_rate};
 use crate::run::{Cap, Event, Record, Run, Start, Status, Step};
 use crate::settings::Settings;
-use crate::system::{Bound, Direction, Hybrid};
+use crate::system::{Bound, Direction, Hybrid, expect_mode};
 use crate::zeno::recognise;
 use featherbench_spatial::{Real, larger, largest};
 
 /// Runs a system from a start to a time.
 ///
 /// ```
-/// use featherbench_hybrid::library::BouncingBall;
+/// use featherbench_hybrid::systems::BouncingBall;
 /// use featherbench_hybrid::{Settings, Start, Status, simulate};
 /// let ball = Start { mode: 0, time: 0.0, state: vec![1.0, 0.0, 0.0] };
 /// let run = simulate(&BouncingBall, &[9.81, 0.8], &ball, 10.0, &Settings::default())?;
@@ -41,9 +41,7 @@ pub fn simulate<S: Hybrid, T: Real>(system: &S, theta: &[T], start: &Start<T>, t
     expect("state", &start.state, system.states())?;
     expect("parameters", theta, system.parameters())?;
     expect("time", &[start.time, to], 2)?;
-    if start.mode >= system.modes() {
-        return Err(HybridError::Mode { mode: start.mode, modes: system.modes() });
-    }
+    expect_mode(system, start.mode)?;
     if (to - start.time).min_lane() < 0.0 {
         return Err(HybridError::Backward { from: start.time.min_lane(), to: to.min_lane() });
     }

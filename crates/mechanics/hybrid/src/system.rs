@@ -3,6 +3,7 @@
 //! Everything that depends on the state is generic over the scalar. So the Jacobians of the flow, of the guards and of the resets come from
 //! dual numbers through the same text.
 
+use crate::error::HybridError;
 use featherbench_spatial::{Dual, Real};
 
 /// Which crossing of g = 0 is an event.
@@ -35,8 +36,6 @@ pub enum Direction {
 /// impl Hybrid for Sawtooth {
 ///     fn states(&self) -> usize { 1 }
 ///     fn parameters(&self) -> usize { 1 }
-///     fn modes(&self) -> usize { 1 }
-///     fn guards(&self, _: usize) -> usize { 1 }
 ///     fn direction(&self, _: usize, _: usize) -> Direction { Direction::Rising }
 ///     fn flow<T: Real>(&self, _: usize, _: T, _: &[T], _: &[T], rate: &mut [T]) { rate[0] = T::one(); }
 ///     fn guard<T: Real>(&self, _: usize, _: usize, _: T, x: &[T], theta: &[T]) -> T { x[0] - theta[0] }
@@ -55,14 +54,20 @@ pub trait Hybrid {
     /// p.
     fn parameters(&self) -> usize;
 
-    /// The number of modes.
-    fn modes(&self) -> usize;
+    /// The number of modes. Without another definition there is one.
+    fn modes(&self) -> usize {
+        1
+    }
 
-    /// The number of guards of a mode.
-    fn guards(&self, mode: usize) -> usize;
+    /// The number of guards of a mode. Without another definition there is one.
+    fn guards(&self, _mode: usize) -> usize {
+        1
+    }
 
-    /// Which crossings of a guard are events.
-    fn direction(&self, mode: usize, guard: usize) -> Direction;
+    /// Which crossings of a guard are events. Without another definition g falls.
+    fn direction(&self, _mode: usize, _guard: usize) -> Direction {
+        Direction::Falling
+    }
 
     /// f, into `rate`.
     fn flow<T: Real>(&self, mode: usize, t: T, x: &[T], theta: &[T], rate: &mut [T]);
@@ -70,8 +75,10 @@ pub trait Hybrid {
     /// g.
     fn guard<T: Real>(&self, mode: usize, guard: usize, t: T, x: &[T], theta: &[T]) -> T;
 
-    /// R, into `after`.
-    fn reset<T: Real>(&self, mode: usize, guard: usize, t: T, x: &[T], theta: &[T], after: &mut [T]);
+    /// R, into `after`. Without another definition the state stays.
+    fn reset<T: Real>(&self, _mode: usize, _guard: usize, _t: T, x: &[T], _theta: &[T], after: &mut [T]) {
+        after.copy_from_slice(x);
+    }
 
     /// The mode after an event, from the state after the reset. Without another definition it stays.
     fn target(&self, mode: usize, _guard: usize, _t: f64, _after: &[f64], _theta: &[f64]) -> usize {
@@ -99,8 +106,7 @@ impl<S: Hybrid, T: Real> Bound<'_, S, T> {
 
     /// g, and its derivative where time runs with the rate 1 and the state with `rate`.
     pub(crate) fn guard(&self, guard: usize, t: T, x: &[T], rate: &[T]) -> (T, T) {
-        let x: Vec<Dual<T>> = x.iter().zip(rate).map(|(x, rate)| Dual::new(*x, *rate)).collect();
-        let g = self.system.guard(self.mode, guard, Dual::new(t, T::one()), &x, &constants(self.theta));
+        let g = self.system.guard(self.mode, guard, Dual::new(t, T::one()), &moving(x, rate), &constants(self.theta));
         (g.value, g.derivative)
     }
 
@@ -131,6 +137,16 @@ pub(crate) fn rounding<T: Real>() -> f64 {
     let small = T::from_f64(2.0_f64.powi(-60));
     let kept = (T::one() + small - T::one()).min_lane() != 0.0;
     if kept { f64::EPSILON * f64::EPSILON } else { f64::EPSILON }
+}
+
+/// An error unless the system has this mode.
+pub(crate) fn expect_mode<S: Hybrid>(system: &S, mode: usize) -> Result<(), HybridError> {
+    if mode < system.modes() { Ok(()) } else { Err(HybridError::Mode { mode, modes: system.modes() }) }
+}
+
+/// Numbers that move with the given rates.
+pub(crate) fn moving<T: Real>(numbers: &[T], rates: &[T]) -> Vec<Dual<T>> {
+    numbers.iter().zip(rates).map(|(number, rate)| Dual::new(*number, *rate)).collect()
 }
 
 /// Numbers that do not move.

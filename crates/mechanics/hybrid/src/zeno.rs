@@ -16,8 +16,7 @@
 use crate::run::Event;
 use crate::settings::Zeno;
 use crate::system::rounding;
-use featherbench_spatial::Real;
-use featherbench_spatial::largest;
+use featherbench_spatial::{Real, largest};
 
 /// A limit that was extrapolated.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! What is no start, no parameter or no setting is refused by name.
 
-use featherbench_hybrid::library::{BouncingBall, RockingBlock, StickSlip};
+use featherbench_hybrid::systems::{BouncingBall, RockingBlock, StickSlip};
 use featherbench_hybrid::{Direction, Hybrid, HybridError, Saltation, Settings, Start, Zeno, adjoint, sensitivity, simulate};
 use featherbench_spatial::Real;
 
@@ -81,28 +81,12 @@ impl Hybrid for Wide {
         0
     }
 
-    fn modes(&self) -> usize {
-        1
-    }
-
-    fn guards(&self, _: usize) -> usize {
-        1
-    }
-
-    fn direction(&self, _: usize, _: usize) -> Direction {
-        Direction::Either
-    }
-
     fn flow<T: Real>(&self, _: usize, _: T, _: &[T], _: &[T], rate: &mut [T]) {
         rate.fill(T::zero());
     }
 
     fn guard<T: Real>(&self, _: usize, _: usize, _: T, _: &[T], _: &[T]) -> T {
         T::one()
-    }
-
-    fn reset<T: Real>(&self, _: usize, _: usize, _: T, x: &[T], _: &[T], after: &mut [T]) {
-        after.copy_from_slice(x);
     }
 }
 
@@ -142,10 +126,6 @@ impl Hybrid for Wild {
         0
     }
 
-    fn modes(&self) -> usize {
-        1
-    }
-
     fn guards(&self, _: usize) -> usize {
         self.guards
     }
@@ -164,10 +144,6 @@ impl Hybrid for Wild {
         let distance = x[0] - T::from_f64(1.9) + T::from_f64(1e-16);
         let sign = distance / (distance * distance + T::from_f64(1e-60)).sqrt();
         distance + T::from_f64(self.jump) * sign
-    }
-
-    fn reset<T: Real>(&self, _: usize, _: usize, _: T, x: &[T], _: &[T], after: &mut [T]) {
-        after[0] = x[0];
     }
 }
 

@@ -1,27 +1,12 @@
-//! Events and cycles of the library against their closed forms.
+//! Closed forms of `systems` by a second route. That runs have their event times is asked by the study `contact`.
 
-use featherbench_hybrid::library::{RimlessWheel, RockingBlock, SlidingSphere, StickSlip, carlson, incomplete};
-use featherbench_hybrid::{Hybrid, Run, Settings, Start, Status, sensitivity, simulate};
+use featherbench_hybrid::systems::{RimlessWheel, RockingBlock, SlidingSphere, carlson, incomplete};
+use featherbench_hybrid::{Hybrid, Run, Settings, Start, sensitivity, simulate};
 use featherbench_spatial::{DoubleDouble, Real};
 
 fn go<S: Hybrid>(system: &S, theta: &[f64], mode: usize, state: &[f64], to: f64) -> Run<f64> {
     let start = Start { mode, time: 0.0, state: state.to_vec() };
     simulate(system, theta, &start, to, &Settings::default()).unwrap()
-}
-
-#[test]
-fn sphere_rolls() {
-    let mut random = featherbench_robots::Random::named(2, "sphere");
-    let mut cases = vec![[5.0, 0.3, 9.81, 0.1]];
-    cases.extend(
-        (0..20).map(|_| [random.uniform(0.5, 9.0), random.uniform(0.1, 1.0), random.uniform(1.0, 20.0), random.uniform(0.05, 2.0)]),
-    );
-    for [speed, friction, gravity, radius] in cases {
-        let known = SlidingSphere::rolling_time(speed, friction, gravity);
-        let run = go(&SlidingSphere, &[friction, gravity, radius], 0, &[0.0, speed, 0.0], 1.5 * known);
-        assert!((run.events[0].time / known - 1.0).abs() <= 1e-12);
-        assert!((run.state[1] / (5.0 * speed / 7.0) - 1.0).abs() <= 1e-12 && run.mode == 1 && run.status == Status::Finished);
-    }
 }
 
 /// The angular momentum about the point of contact is kept while it slides: m ρ v + (2/5) m ρ² ω, a second route to 5v₀/7.
@@ -30,25 +15,6 @@ fn sphere_keeps_its_momentum() {
     let run = go(&SlidingSphere, &[0.3, 9.81, 0.1], 0, &[0.0, 5.0, 0.0], 0.9);
     let momentum = |x: &[f64]| x[1] + 0.4 * 0.1 * x[2];
     assert!((momentum(&run.events[0].before) - 5.0).abs() < 1e-14 && (momentum(&run.state) - 5.0).abs() < 1e-14);
-}
-
-/// Slip and stick times of many cycles.
-#[test]
-fn stick_and_slip_alternate() {
-    for theta in [[1.0, 1.0, 0.3, 1.0, 0.6], [2.0, 50.0, 0.1, 4.0, 3.0], [0.7, 9.0, 1.1, 2.0, 0.1]] {
-        let (slip, stick) = (StickSlip::slip_time(&theta), StickSlip::stick_time(&theta));
-        let release = theta[3] / theta[1];
-        let run = go(&StickSlip, &theta, 1, &[release, theta[2]], 5.5 * (slip + stick));
-        assert_eq!(
-            (&run.status, run.events.len()),
-            (&Status::Finished, 10 + usize::from(5.5 * (slip + stick) > 5.0 * (slip + stick) + slip))
-        );
-        for (index, event) in run.events.iter().enumerate() {
-            let cycles = (index / 2) as f64 * (slip + stick);
-            let known = if index % 2 == 0 { cycles + slip } else { cycles + slip + stick };
-            assert!((event.time / known - 1.0).abs() <= 1e-12, "event {index}: {} {known}", event.time);
-        }
-    }
 }
 
 /// The limit cycle: after one step the state is the same, and a small deviation is multiplied by cos² 2α.
@@ -85,27 +51,17 @@ fn wheel_has_a_limit_cycle() {
     assert!(multipliers >= 10, "{multipliers}");
 }
 
-/// The quarter periods, and r by angular momentum in numbers.
+/// r by angular momentum in numbers, and the quarter periods by what SCIENCE has.
 #[test]
 fn block_rocks() {
     for (width, height, ratio) in [(0.25_f64, 1.0_f64, 31.0 / 34.0_f64), (0.2, 1.0, 49.0 / 52.0)] {
         assert!((RockingBlock::ratio(width, height) - ratio).abs() < 1e-15);
-        let alpha = (width / height).atan();
         let momenta = momentum_about_new_edge(width, height);
         assert!((RockingBlock::ratio(width, height) - momenta).abs() < 1e-15, "{momenta}");
-        for amplitude in [0.05, 0.5, 0.9] {
-            let theta = [9.81, width, height];
-            let p = RockingBlock::frequency(9.81, width, height);
-            let known = RockingBlock::quarter(alpha, amplitude * alpha).unwrap();
-            let run = go(&RockingBlock, &theta, 0, &[amplitude * alpha, 0.0], 1.2 * known / p);
-            let event = &run.events[0];
-            assert!((event.time * p / known - 1.0).abs() <= 1e-12, "{} {known}", event.time * p);
-            assert!((event.after[1] / event.before[1] - ratio).abs() <= 1e-15);
-        }
     }
     let alpha = 0.25_f64.atan();
     let (linear, exact) = (RockingBlock::linear_quarter(alpha, 0.5 * alpha).unwrap(), RockingBlock::quarter(alpha, 0.5 * alpha).unwrap());
-    // The linear one is arccosh 2 = ln(2 + √3); both as SCIENCE has them.
+    // The linear one is arccosh 2 = ln(2 + √3).
     assert!((linear - (2.0 + 3.0_f64.sqrt()).ln()).abs() < 1e-15 && (exact - 1.319_279_499_56).abs() < 1e-11, "{exact}");
     // A slender block is linear: the difference falls like α².
     let difference = |alpha: f64| RockingBlock::quarter(alpha, 0.5 * alpha).unwrap() - linear;

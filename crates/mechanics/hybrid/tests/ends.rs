@@ -1,6 +1,6 @@
 //! How runs end: grazing, several guards at once, chains, caps; and events that hide within a step.
 
-use featherbench_hybrid::library::{BouncingBall, MovingTable, SlantedBox};
+use featherbench_hybrid::systems::{BouncingBall, MovingTable, SlantedBox};
 use featherbench_hybrid::{Cap, Direction, Hybrid, Run, Settings, Start, Status, simulate};
 use featherbench_spatial::Real;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -17,14 +17,6 @@ impl Hybrid for Line {
     }
 
     fn parameters(&self) -> usize {
-        1
-    }
-
-    fn modes(&self) -> usize {
-        1
-    }
-
-    fn guards(&self, _: usize) -> usize {
         1
     }
 
@@ -241,10 +233,6 @@ impl Hybrid for Hesitant {
         2
     }
 
-    fn guards(&self, _: usize) -> usize {
-        1
-    }
-
     fn direction(&self, _: usize, _: usize) -> Direction {
         Direction::Rising
     }
@@ -255,10 +243,6 @@ impl Hybrid for Hesitant {
 
     fn guard<T: Real>(&self, _: usize, _: usize, _: T, x: &[T], _: &[T]) -> T {
         x[0] - T::from_f64(0.5)
-    }
-
-    fn reset<T: Real>(&self, _: usize, _: usize, _: T, x: &[T], _: &[T], after: &mut [T]) {
-        after[0] = x[0];
     }
 
     fn target(&self, mode: usize, _: usize, _: f64, _: &[f64], _: &[f64]) -> usize {

@@ -1,6 +1,6 @@
-//! Saltation matrices against their closed forms, each at 200 drawn states.
+//! What saltation matrices do, each at 200 drawn states. That they are the closed forms of `systems` is asked by the study `contact`.
 
-use featherbench_hybrid::library::{BouncingBall, MovingTable, RimlessWheel, SlantedBox, SlidingSphere, StickSlip};
+use featherbench_hybrid::systems::{BouncingBall, RimlessWheel, SlantedBox, SlidingSphere, StickSlip};
 use featherbench_hybrid::{HybridError, Saltation};
 use featherbench_robots::Random;
 use nalgebra::{DMatrix, Matrix2};
@@ -19,33 +19,16 @@ fn ball() {
         let (g, e, v) = (random.uniform(1.0, 20.0), random.uniform(0.0, 1.0), -random.uniform(0.01, 10.0));
         let found = Saltation::new(&BouncingBall, &[g, e], 0, 0, 1, 0.0, &[0.0, v, 2.0]).unwrap();
         let matrix = found.matrix();
-        let known = DMatrix::from_row_slice(2, 2, &[-e, 0.0, -(1.0 + e) * g / v, -e]);
         let part = matrix.view((0, 0), (2, 2)).into_owned();
-        assert!(difference(&part, &known) <= 1e-12);
         // The area in phase space shrinks by e².
-        assert!((part.determinant() - e * e).abs() <= 1e-12 * known.amax().powi(2));
+        assert!((part.determinant() - e * e).abs() <= 1e-12 * part.amax().powi(2));
         // ∂t*/∂y = −1/v; the speed after grows with e by the speed before; the path stops growing by v − and begins by +v⁺.
         assert!((found.time[0] + 1.0 / v).abs() <= 1e-12 / v.abs() && found.time[1] == 0.0);
         assert!((found.parameters()[(1, 1)] + v).abs() <= 1e-12 * v.abs());
     }
 }
 
-#[test]
-fn moving_table() {
-    let mut random = Random::named(2, "saltation on a table");
-    for _ in 0..DRAWS {
-        let theta = [random.uniform(1.0, 20.0), random.uniform(0.0, 1.0), random.uniform(0.01, 0.3), random.uniform(1.0, 20.0)];
-        let t = random.uniform(0.0, 5.0);
-        let (sine, cosine) = (theta[3] * t).sin_cos();
-        // Faster downwards than the table.
-        let v = theta[2] * theta[3] * cosine - random.uniform(0.1, 5.0);
-        let found = Saltation::new(&MovingTable, &theta, 0, 0, 0, t, &[theta[2] * sine, v]).unwrap();
-        let known = DMatrix::from_row_slice(2, 2, &MovingTable::saltation(t, v, &theta));
-        assert!(difference(&found.matrix(), &known) <= 1e-12);
-    }
-}
-
-/// Against the closed form, and against the bouncing ball's matrix in the frame of the wall.
+/// Against the bouncing ball's matrix in the frame of the wall.
 #[test]
 fn slanted_wall() {
     let mut random = Random::named(3, "saltation at a wall");
@@ -56,8 +39,6 @@ fn slanted_wall() {
         let v = [normal * cosine - along * sine, normal * sine + along * cosine];
         let before = [d * cosine, d * sine, v[0], v[1]];
         let found = Saltation::new(&SlantedBox { walls: 1 }, &[g, e, angle, d], 0, 0, 0, 0.0, &before).unwrap().matrix();
-        let known = DMatrix::from_row_slice(4, 4, SlantedBox::saltation(g, e, angle, v).as_flattened());
-        assert!(difference(&found, &known) <= 1e-12);
         // In the frame (normal, tangent) the normal pair is a ball under the gravity g sin φ, and the tangent pair passes.
         let turn = DMatrix::from_row_slice(2, 2, &[cosine, sine, -sine, cosine]);
         let mut both = DMatrix::zeros(4, 4);

@@ -1,7 +1,7 @@
-//! Prints every scene of the library as JSON, one a line: what an oracle gets.
+//! Prints every scene as JSON, one a line: what an oracle gets.
 
 fn main() -> Result<(), serde_json::Error> {
-    for question in featherbench_scenes::library::all() {
+    for question in featherbench_scenes::systems::all() {
         println!("{}", serde_json::json!({"scene": serde_json::to_value(&question.scene)?, "duration": question.duration}));
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! Our step reaches the exact answers, by both solvers, with errors that fall with the step.
 
-use featherbench_scenes::{Fit, OwnSolver, Question, SceneError, library, simulate};
+use featherbench_scenes::{Fit, OwnSolver, Question, SceneError, simulate, systems};
 
 fn values(question: &Question, dt: f64, mut solver: OwnSolver) -> Vec<f64> {
     let steps = question.steps(dt);
@@ -23,7 +23,7 @@ fn allowed(quantity: &str) -> f64 {
 #[test]
 fn sweeps_need_more_than_their_cap_under_a_heavy_ball() {
     // The rate is R/(1 + R) with the mass ratio R = 1000: a power of 28 000 is 1e-12.
-    let question = library::all().into_iter().find(|question| question.scene.name == "stack_1000").unwrap();
+    let question = systems::all().into_iter().find(|question| question.scene.name == "stack_1000").unwrap();
     let error = simulate(&question.scene, 1e-3, 20, 20, &mut OwnSolver::sweeps()).unwrap_err();
     assert!(matches!(error, SceneError::Solver { step: 0, .. }) && error.to_string().contains("cap_reached"), "{error}");
 }
@@ -31,7 +31,7 @@ fn sweeps_need_more_than_their_cap_under_a_heavy_ball() {
 #[test]
 fn every_scene_has_its_answer() {
     let mut judged = 0;
-    for question in library::all() {
+    for question in systems::all() {
         for (measure, value) in question.measures.iter().zip(values(&question, question.finest(), OwnSolver::newton())) {
             let error = measure.error(value);
             println!(
@@ -54,7 +54,7 @@ fn every_scene_has_its_answer() {
 #[test]
 fn errors_fall_with_the_step() {
     let mut fitted = 0;
-    for question in library::all()
+    for question in systems::all()
         .into_iter()
         .filter(|q| ["incline_0", "sliding_sphere", "bouncing_ball", "box_on_balls"].contains(&q.scene.name.as_str()))
     {
@@ -74,7 +74,7 @@ fn errors_fall_with_the_step() {
 #[test]
 fn both_solvers_move_a_scene_alike() {
     for name in ["incline_45", "painleve_rod", "rocking_block"] {
-        let question = library::all().into_iter().find(|question| question.scene.name == name).unwrap();
+        let question = systems::all().into_iter().find(|question| question.scene.name == name).unwrap();
         for (a, b) in values(&question, 2e-3, OwnSolver::sweeps()).iter().zip(values(&question, 2e-3, OwnSolver::newton())) {
             assert!((a - b).abs() <= 1e-6, "{name}: {a:e} {b:e}");
         }

@@ -1,7 +1,7 @@
 //! Exact answers and laws by a second route.
 
-use featherbench_contact::library::{BoxOnBalls as Known, PainleveRod};
-use featherbench_scenes::library::{Block, BoxOnBalls, Incline, Rod, Sliding, Table};
+use featherbench_contact::systems::{BoxOnBalls as Known, PainleveRod};
+use featherbench_scenes::systems::{Block, BoxOnBalls, Incline, Rod, Sliding, Table};
 use featherbench_scenes::{Fit, SoftContact, block_step_felt, box_pyramid_felt, inscribed_pyramid_felt};
 use featherbench_spatial::larger;
 

@@ -2,7 +2,7 @@
 
 use featherbench_dynamics::{Jacobian, Kinematics, bias_force};
 use featherbench_robots::Family;
-use featherbench_scenes::library::{BoxStack, Standing};
+use featherbench_scenes::systems::{BoxStack, Standing};
 use featherbench_scenes::{Body, Geometry, OwnSolver, Scene, Shape, simulate, touches};
 use featherbench_spatial::Vec3;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};

@@ -26,6 +26,16 @@ pub fn dense<T: Real + Scalar>(jacobian: &[T], mass: &TreeSparse<T>) -> Result<D
     let n = mass.size();
     let rows = jacobian.len().checked_div(n).unwrap_or(0);
     DimensionError::expect("numbers of the Jacobian", rows * n, jacobian.len())?;
+    let lower = cholesky(mass)?;
+    // A row of J is a column of Jᵀ.
+    let mut half = DMatrix::from_column_slice(n, rows, jacobian);
+    half.column_iter_mut().for_each(|mut column| forward(&lower, column.as_mut_slice()));
+    Ok(gram(&half))
+}
+
+/// L with L Lᵀ = M, in the lower triangle.
+pub(crate) fn cholesky<T: Real + Scalar>(mass: &TreeSparse<T>) -> Result<DMatrix<T>, Error> {
+    let n = mass.size();
     let mut lower = DMatrix::from_element(n, n, T::zero());
     for column in 0..n {
         for row in column..n {
@@ -41,14 +51,15 @@ pub fn dense<T: Real + Scalar>(jacobian: &[T], mass: &TreeSparse<T>) -> Result<D
             }
         }
     }
-    let mut half = DMatrix::from_element(n, rows, T::zero());
-    for row in 0..rows {
-        for dof in 0..n {
-            let sum = (0..dof).fold(jacobian[row * n + dof], |sum, k| (-lower[(dof, k)]).mul_add(half[(k, row)], sum));
-            half[(dof, row)] = sum / lower[(dof, dof)];
-        }
+    Ok(lower)
+}
+
+/// x ← L⁻¹x.
+pub(crate) fn forward<T: Real + Scalar>(lower: &DMatrix<T>, x: &mut [T]) {
+    for row in 0..x.len() {
+        let sum = (0..row).fold(x[row], |sum, k| (-lower[(row, k)]).mul_add(x[k], sum));
+        x[row] = sum / lower[(row, row)];
     }
-    Ok(gram(&half))
 }
 
 /// `YᵀY`, each pair of columns once.

@@ -14,5 +14,6 @@ mod factors;
 mod propagation;
 
 pub use dense::dense;
+pub(crate) use dense::{cholesky, forward};
 pub use factors::{by_factors, half_solved};
 pub use propagation::{Articulated, by_propagation};

@@ -177,7 +177,7 @@ impl<T: Real> Articulated<T> {
 /// [`Error`]: an argument does not fit, or a dof meets no inertia.
 ///
 /// ```
-/// use featherbench_constrained::{Rows, delassus::{by_factors, by_propagation}, library::Ladder};
+/// use featherbench_constrained::{Rows, delassus::{by_factors, by_propagation}, systems::Ladder};
 /// use featherbench_dynamics::mass_matrix;
 /// let ladder = Ladder::default();
 /// let four_bar = ladder.mechanism()?;

@@ -90,7 +90,7 @@ impl Projection {
     /// The others as [`Rows::run`](crate::Rows::run).
     ///
     /// ```
-    /// use featherbench_constrained::{library::Ladder, stabilise::Projection};
+    /// use featherbench_constrained::{stabilise::Projection, systems::Ladder};
     /// let ladder = Ladder::default();
     /// let four_bar = ladder.mechanism()?;
     /// let mut q = ladder.spread(0.5);
@@ -140,7 +140,7 @@ impl Projection {
     /// [`Error`]: an argument does not fit or is not finite, a dof meets no inertia, or a weld is half a turn off.
     ///
     /// ```
-    /// use featherbench_constrained::{library::Ladder, stabilise::Projection};
+    /// use featherbench_constrained::{stabilise::Projection, systems::Ladder};
     /// let ladder = Ladder::default();
     /// let four_bar = ladder.mechanism()?;
     /// let mut v = [1.0, 0.0, 0.0];

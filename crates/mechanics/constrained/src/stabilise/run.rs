@@ -123,7 +123,7 @@ impl Simulation<'_> {
     /// way. An iterative method that reaches its cap is [`Error::NotConverged`].
     ///
     /// ```
-    /// use featherbench_constrained::{Kkt, library::Ladder, stabilise::{Simulation, Stabilisation}};
+    /// use featherbench_constrained::{Kkt, stabilise::{Simulation, Stabilisation}, systems::Ladder};
     /// let ladder = Ladder::default();
     /// let four_bar = ladder.mechanism()?;
     /// let simulation = Simulation {

@@ -189,7 +189,7 @@ pub fn write(problem: &Problem, path: impl AsRef<Path>) -> Result<(), FileError>
 /// The text of a problem's file. Reading it gives the same problem.
 ///
 /// ```
-/// use featherbench_contact::{file, library::Kane};
+/// use featherbench_contact::{file, systems::Kane};
 /// let problem = Kane::default().problem()?;
 /// assert_eq!(file::parse(&file::to_text(&problem), "kane.json")?, problem);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -93,7 +93,7 @@ pub enum NoImpact {
 ///
 /// ```
 /// use featherbench_contact::impact::{Law, impact};
-/// use featherbench_contact::library::Kane;
+/// use featherbench_contact::systems::Kane;
 /// // Kane's puzzle: under Newton's law with Coulomb's friction the double pendulum gains energy.
 /// let problem = Kane::default().problem()?;
 /// assert!(impact(&problem, Law::Newton)?.energy > 0.0);

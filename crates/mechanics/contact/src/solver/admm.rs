@@ -19,7 +19,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 /// ADMM. One factorization, then O(rows²) per iteration.
 ///
 /// ```
-/// use featherbench_contact::library::Incline;
+/// use featherbench_contact::systems::Incline;
 /// use featherbench_contact::{Admm, Solver};
 /// let problem = Incline::default().problem()?;
 /// let point = Admm::default().solve(&problem)?.point().cloned().ok_or("no answer")?;

@@ -28,7 +28,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Matrix3};
 /// Nonsmooth Gauss–Seidel with exact contacts.
 ///
 /// ```
-/// use featherbench_contact::library::Feet;
+/// use featherbench_contact::systems::Feet;
 /// use featherbench_contact::{BlockGaussSeidel, Solver};
 /// let solution = BlockGaussSeidel::default().solve(&Feet::default().problem()?)?;
 /// assert!(solution.point().ok_or("no answer")?.residuals.natural_map < 1e-9);
@@ -72,7 +72,7 @@ const TURNS: usize = 4;
 /// A problem in the form that is swept, and its impulses: standard axes, free of units.
 ///
 /// ```
-/// use featherbench_contact::library::Feet;
+/// use featherbench_contact::systems::Feet;
 /// use featherbench_contact::solver::{BlockGaussSeidel, Blocks};
 /// let mut blocks = Blocks::new(&Feet::default().problem()?)?;
 /// let sweeps = blocks.run(&BlockGaussSeidel::default());

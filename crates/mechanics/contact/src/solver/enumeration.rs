@@ -19,7 +19,7 @@ use nalgebra::{DVector, SymmetricEigen};
 /// Enumeration of all modes.
 ///
 /// ```
-/// use featherbench_contact::library::PainleveRod;
+/// use featherbench_contact::systems::PainleveRod;
 /// use featherbench_contact::{Enumeration, Outcome, Solver};
 /// // The rod turns at 4 rad/s: it may lift off, or press itself into the ground.
 /// let rod = PainleveRod { friction: 1.5, rate: 4.0, ..PainleveRod::default() };
@@ -60,22 +60,21 @@ impl Exact {
         let scales = problem.scales();
         let power = |x: f64| 2.0_f64.powi(x.log2().round() as i32);
         let (velocity, impulse) = (power(scales.velocity), power(scales.impulse));
-        let given =
-            || (Matrix::from_f64(problem.delassus()), problem.free().iter().map(|b| DoubleDouble::from_f64(*b)).collect::<Vec<_>>());
+        let given = || (extended::wide(problem.delassus()), problem.free().iter().map(|b| DoubleDouble::from_f64(*b)).collect::<Vec<_>>());
         let exact = problem.mechanism().and_then(extended::delassus);
         let known = exact.is_some();
         let (matrix, free) = exact.unwrap_or_else(given);
         let scaled = |value: DoubleDouble, factor: f64| value * DoubleDouble::from_f64(factor);
-        let matrix = Matrix::from_fn(matrix.rows, matrix.columns, |row, column| scaled(matrix.at(row, column), impulse / velocity));
+        let matrix = matrix.map(|entry| scaled(entry, impulse / velocity));
         let shift = problem.restitution_shift();
         let free = free.iter().zip(&shift).map(|(b, shift)| scaled(*b + DoubleDouble::from_f64(*shift), 1.0 / velocity)).collect();
-        let eigenvalues = SymmetricEigen::new(matrix.to_f64()).eigenvalues;
+        let eigenvalues = SymmetricEigen::new(matrix.map(DoubleDouble::to_f64)).eigenvalues;
         let regular = eigenvalues.min() > 1e-10 * eigenvalues.max();
         Self { matrix, free, zero: if known || regular { EXACT } else { GIVEN }, impulse_scale: impulse }
     }
 
     pub fn velocities(&self, impulses: &[DoubleDouble]) -> Vec<DoubleDouble> {
-        self.matrix.times_plus(impulses, &self.free)
+        extended::times_plus(&self.matrix, impulses, &self.free)
     }
 }
 
@@ -279,7 +278,7 @@ fn solve(exact: &Exact, states: &[&State]) -> Solved {
     let rows: Vec<usize> = states.iter().flat_map(|state| state.zero.iter().copied()).collect();
     let edges: Vec<&Edge> = states.iter().flat_map(|state| &state.edges).collect();
     let entry = |row: usize, edge: usize| {
-        edges[edge].iter().fold(DoubleDouble::zero(), |sum, (k, factor)| exact.matrix.at(rows[row], *k).mul_add(*factor, sum))
+        edges[edge].iter().fold(DoubleDouble::zero(), |sum, (k, factor)| exact.matrix[(rows[row], *k)].mul_add(*factor, sum))
     };
     let matrix = Matrix::from_fn(rows.len(), edges.len(), entry);
     let right = rows.iter().map(|row| -exact.free[*row]).collect();

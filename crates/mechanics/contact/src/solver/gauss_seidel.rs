@@ -12,7 +12,7 @@ use nalgebra::DVector;
 /// Projected Gauss–Seidel. O(rows²) per sweep.
 ///
 /// ```
-/// use featherbench_contact::library::Stack;
+/// use featherbench_contact::systems::Stack;
 /// use featherbench_contact::{GaussSeidel, Solver};
 /// let problem = Stack::two(10.0).problem()?;
 /// let solution = GaussSeidel::default().solve(&problem)?;

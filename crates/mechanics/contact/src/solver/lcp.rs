@@ -25,7 +25,7 @@ impl Lcp {
     /// The complementarity problem. A round cone becomes a pyramid with this many vertices.
     ///
     /// ```
-    /// use featherbench_contact::library::PainleveRod;
+    /// use featherbench_contact::systems::PainleveRod;
     /// use featherbench_contact::Lcp;
     /// // A sliding contact has one unknown: ÿ = b + p N.
     /// let lcp = Lcp::new(&PainleveRod { friction: 1.5, ..PainleveRod::default() }.problem()?, 8);

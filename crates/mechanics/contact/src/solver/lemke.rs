@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 /// Lemke's method. Exact for planar contacts and pyramids; a round cone becomes an inscribed pyramid.
 ///
 /// ```
-/// use featherbench_contact::library::Table;
+/// use featherbench_contact::systems::Table;
 /// use featherbench_contact::{Lemke, Solver};
 /// let solution = Lemke::default().solve(&Table::default().problem()?)?;
 /// assert_eq!(solution.status(), "converged");

@@ -73,7 +73,7 @@ pub enum Unsupported {
 /// A solver of contact problems.
 ///
 /// ```
-/// use featherbench_contact::library::PainleveRod;
+/// use featherbench_contact::systems::PainleveRod;
 /// use featherbench_contact::{Enumeration, Lemke, Solver};
 /// // The sliding rod with μ = 1.5 at rest in rotation: no force obeys the laws.
 /// let problem = PainleveRod { friction: 1.5, ..PainleveRod::default() }.problem()?;

@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector};
 /// Newton's method on the true laws (function of Alart and Curnier). O(rows³) per step.
 ///
 /// ```
-/// use featherbench_contact::library::Kane;
+/// use featherbench_contact::systems::Kane;
 /// use featherbench_contact::{Newton, Solver};
 /// let problem = Kane::default().problem()?;
 /// let point = Newton::default().solve(&problem)?.point().cloned().ok_or("no answer")?;
@@ -40,7 +40,7 @@ impl Default for Newton {
 /// [`Point::residuals`](crate::Point) shows by how much.
 ///
 /// ```
-/// use featherbench_contact::library::Incline;
+/// use featherbench_contact::systems::Incline;
 /// use featherbench_contact::{Convex, Solver};
 /// let incline = Incline::default();
 /// let solution = Convex::default().solve(&incline.problem()?)?;
@@ -67,7 +67,7 @@ impl Default for Convex {
 /// Compliant contacts: λ_n = k max(0, −c_n), λ_t = the point of the friction disk next to −k c_t. The laws hold as k grows, with errors 1/k.
 ///
 /// ```
-/// use featherbench_contact::library::Incline;
+/// use featherbench_contact::systems::Incline;
 /// use featherbench_contact::{Penalty, Solver};
 /// let solution = Penalty { stiffness: 1e3, ..Penalty::default() }.solve(&Incline::default().problem()?)?;
 /// let residuals = solution.point().ok_or("no answer")?.residuals;

@@ -20,7 +20,7 @@ pub(super) fn search(problem: &Problem, exact: &Exact) -> Result<Search, &'stati
     let [contact] = problem.contacts() else { return Err("it enumerates a round cone only if it is the only contact") };
     let Friction::Coulomb { coefficients } = &contact.friction else { return Err("it has no friction pyramids") };
     let scale: Vec<DoubleDouble> = std::iter::once(1.0).chain(coefficients.iter().copied()).map(DoubleDouble::from_f64).collect();
-    let matrix = Matrix::from_fn(3, 3, |row, column| scale[row] * exact.matrix.at(row, column) * scale[column]);
+    let matrix = Matrix::from_fn(3, 3, |row, column| scale[row] * exact.matrix[(row, column)] * scale[column]);
     let free: Vec<DoubleDouble> = exact.free.iter().zip(&scale).map(|(b, s)| *b * *s).collect();
     let mut search = Search::new();
     let mut candidates = vec![vec![DoubleDouble::zero(); 3]];
@@ -30,15 +30,15 @@ pub(super) fn search(problem: &Problem, exact: &Exact) -> Result<Search, &'stati
         Solved::Inconsistent => {}
     }
     for (sine, cosine) in directions(&matrix, &free) {
-        let along = |row: usize| matrix.at(row, 1) * cosine + matrix.at(row, 2) * sine;
-        let normal = -free[0] / (matrix.at(0, 0) - along(0));
+        let along = |row: usize| matrix[(row, 1)] * cosine + matrix[(row, 2)] * sine;
+        let normal = -free[0] / (matrix[(0, 0)] - along(0));
         if normal.to_f64().is_finite() {
             candidates.push(vec![normal, -(normal * cosine), -(normal * sine)]);
         }
     }
     search.modes = candidates.len();
     for candidate in candidates {
-        let velocities = matrix.times_plus(&candidate, &free);
+        let velocities = extended::times_plus(&matrix, &candidate, &free);
         let violation = violation(&candidate, &velocities);
         let impulses = candidate.iter().zip(&scale).map(|(x, s)| *x * *s).collect();
         search.offer(impulses, violation, exact.zero);
@@ -57,15 +57,15 @@ fn violation(impulses: &[DoubleDouble], velocities: &[DoubleDouble]) -> f64 {
 /// The coefficients a0, a1, b1, a2, b2 of f.
 fn coefficients(matrix: &Matrix, free: &[DoubleDouble]) -> [DoubleDouble; 5] {
     let half = DoubleDouble::from_f64(0.5);
-    let (g1, g2) = (matrix.at(0, 1), matrix.at(0, 2));
+    let (g1, g2) = (matrix[(0, 1)], matrix[(0, 2)]);
     let (bn, b1, b2) = (free[0], free[1], free[2]);
-    let normal = matrix.at(0, 0);
+    let normal = matrix[(0, 0)];
     [
         half * (g2 * b1 - g1 * b2),
         normal * b2 - bn * g2,
         bn * g1 - normal * b1,
-        bn * matrix.at(1, 2) - half * (g1 * b2 + g2 * b1),
-        half * (bn * (matrix.at(2, 2) - matrix.at(1, 1)) + g1 * b1 - g2 * b2),
+        bn * matrix[(1, 2)] - half * (g1 * b2 + g2 * b1),
+        half * (bn * (matrix[(2, 2)] - matrix[(1, 1)]) + g1 * b1 - g2 * b2),
     ]
 }
 

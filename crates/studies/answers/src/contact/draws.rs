@@ -5,7 +5,7 @@
 
 use super::{Case, count, error, failed, larger, told};
 use featherbench_bench::NoAnswer;
-use featherbench_contact::library::{Cradle, Incline, Kane, RockingBlock, Section, SlidingSphere, Stack, Table};
+use featherbench_contact::systems::{Cradle, Incline, Kane, RockingBlock, Section, SlidingSphere, Stack, Table};
 use featherbench_contact::{Enumeration, Malformed, Point, Problem, Solver, solver};
 use featherbench_robots::Random;
 use serde_json::json;

@@ -2,8 +2,8 @@
 
 use super::{Case, Number, count, error, failed, largest, told};
 use featherbench_bench::NoAnswer;
-use featherbench_hybrid::library::{BouncingBall, MovingTable, RimlessWheel, RockingBlock, SlantedBox, SlidingSphere, StickSlip};
 use featherbench_hybrid::penalty::{Drop, PenaltyBall};
+use featherbench_hybrid::systems::{BouncingBall, MovingTable, RimlessWheel, RockingBlock, SlantedBox, SlidingSphere, StickSlip};
 use featherbench_hybrid::{Hybrid, Run, Saltation, Settings, Start, Status, adjoint, sensitivity, simulate};
 use featherbench_robots::Random;
 use nalgebra::DMatrix;

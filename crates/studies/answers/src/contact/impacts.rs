@@ -3,7 +3,7 @@
 use super::{Case, error, failed, largest, told};
 use featherbench_bench::NoAnswer;
 use featherbench_contact::impact::{Law, impact, orders, sequence};
-use featherbench_contact::library::{Cradle, Kane};
+use featherbench_contact::systems::{Cradle, Kane};
 use featherbench_contact::{Contact, Level, Problem};
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};

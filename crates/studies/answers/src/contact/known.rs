@@ -3,7 +3,7 @@
 use super::problems::answer;
 use super::{Case, count, error, failed, largest, told};
 use featherbench_bench::NoAnswer;
-use featherbench_contact::library::{BoxOnBalls, Feet, Incline, RockingBlock, Section, SlidingSphere, Stack, Table};
+use featherbench_contact::systems::{BoxOnBalls, Feet, Incline, RockingBlock, Section, SlidingSphere, Stack, Table};
 use featherbench_contact::{Convex, Outcome, Residuals, Solver};
 use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_4;

@@ -2,8 +2,8 @@
 
 use super::{Case, Number, count, error, failed, largest, told};
 use featherbench_bench::NoAnswer;
-use featherbench_constrained::library::{Biped, Bricard, Ladder, Squeezer};
 use featherbench_constrained::stabilise::{Projection, Run, Simulation, Stabilisation};
+use featherbench_constrained::systems::{Biped, Bricard, Ladder, Squeezer};
 use featherbench_constrained::{Constrained, Kkt, Mechanism, Method, Mobility, Proximal, RANK, RangeSpace};
 use featherbench_model::{integrate, neutral};
 use featherbench_robots::Random;
@@ -17,7 +17,7 @@ pub(super) fn cases() -> Vec<Case> {
     named.into_iter().map(mobility).chain(accelerations()).chain(runs()).chain([singularity(), squeezer()]).collect()
 }
 
-/// A robot of the library, with what is known of its mobility.
+/// A robot of `featherbench_constrained::systems`, with what is known of its mobility.
 #[derive(Clone, Copy)]
 pub(super) enum Named {
     FourBar,

@@ -2,7 +2,7 @@
 
 use super::{Case, Number, count, error, failed, largest, told};
 use featherbench_bench::NoAnswer;
-use featherbench_contact::library::{Answers, PainleveRod};
+use featherbench_contact::systems::{Answers, PainleveRod};
 use featherbench_contact::{Enumeration, Solver};
 use serde_json::json;
 use std::f64::consts::FRAC_PI_2;

@@ -1,10 +1,10 @@
-//! Contact problems of the library by every solver: what it says of existence, and the residuals of its answers.
+//! The contact problems of `featherbench_contact::systems` by every solver: what it says of existence, and the residuals of its answers.
 //!
 //! Direct solvers of Coulomb's law must obey it. What the others miss by their model or their cap is told.
 
 use super::{Case, Number, count, error, failed, larger, largest, told};
 use featherbench_bench::{NoAnswer, hash};
-use featherbench_contact::library::{self, Answers, PainleveRod};
+use featherbench_contact::systems::{self, Answers, PainleveRod};
 use featherbench_contact::{Friction, Point, Problem, Solver, file, solver};
 use serde_json::json;
 
@@ -14,8 +14,8 @@ const QUANTITY: &str = "contact_solution";
 const RESIDUALS: [&str; 5] = ["signorini", "cone", "dissipation", "natural_map", "energy_created"];
 
 pub(super) fn cases() -> Vec<Case> {
-    // The library's own numbers make no malformed problem; a test counts the cases.
-    let problems = library::all().unwrap_or_default();
+    // The crate's own numbers make no malformed problem; a test counts the cases.
+    let problems = systems::all().unwrap_or_default();
     let solvers = 0..solver::all().len();
     problems.iter().flat_map(|problem| solvers.clone().map(|which| case(problem, which))).collect()
 }

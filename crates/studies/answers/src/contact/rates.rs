@@ -2,7 +2,7 @@
 
 use super::{Case, error, failed, told};
 use featherbench_bench::NoAnswer;
-use featherbench_contact::library::Stack;
+use featherbench_contact::systems::Stack;
 use featherbench_contact::{Admm, GaussSeidel, Solver, rate};
 use serde_json::json;
 

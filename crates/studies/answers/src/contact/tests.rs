@@ -1,12 +1,12 @@
 use super::*;
 use crate::tests::{but_long, cases_differ, numbers_are_as_known, wrong_numbers_fail};
 
-/// No case twice, and every problem of the library has one.
+/// No case twice, and every problem of the crate has one.
 #[test]
 fn every_problem_has_a_case() {
     let cases = cases();
     assert!(cases_differ(&cases) > 250);
-    let problems = featherbench_contact::library::all().unwrap();
+    let problems = featherbench_contact::systems::all().unwrap();
     assert_eq!(problems.len(), 18);
     for problem in problems {
         assert!(cases.iter().any(|case| case.name == problem.name()), "{}", problem.name());

@@ -21,7 +21,7 @@ use featherbench_continua::known::{
     cantilever_root, edges_frequency_prefactor, edges_tip_prefactor, elastica, hermite_frequency_prefactor, links_frequency_prefactor,
     links_tip_prefactor, sections_frequency_prefactor, sections_tip_prefactor,
 };
-use featherbench_continua::{Hinges, Load, Settings, Solver, Status, equilibrium, fit, library, modes};
+use featherbench_continua::{Hinges, Load, Settings, Solver, Status, equilibrium, fit, modes, systems};
 use featherbench_results::{Kind, Row, Verdict, canonical_json};
 use serde_json::json;
 use std::time::Instant;
@@ -126,7 +126,7 @@ pub(super) fn evaluate(context: &Context, cell: &Cell) -> Result<Vec<f64>, NoAns
 /// The answer by an element of ours.
 fn own(name: &str, count: usize) -> Result<RodAnswer, NoAnswer> {
     let start = Instant::now();
-    let (beam, tip) = library::cantilever(&rod()?, &element(name, count)?).map_err(failed)?;
+    let (beam, tip) = systems::cantilever(&rod()?, &element(name, count)?).map_err(failed)?;
     let (rest, zeros) = (beam.rest(), vec![0.0; beam.topology().nv()]);
     let (mut solver, mut second, mut times) = (Solver::new(&beam), zeros.clone(), Vec::with_capacity(CALLS));
     solver.forward(&beam, &rest, &zeros, &zeros, &[], &mut second).map_err(failed)?;

@@ -1,7 +1,7 @@
 //! Rods on bodies that move: momentum of a free hub and of a flying rod, and the limits of a heavy hub and of a stiff rod.
 
 use super::{Case, NoAnswer, case, count, element, error, failed, largest, rod, told};
-use featherbench_continua::{Load, Motion, Rod, energies, library, modes, momentum, rigid_limit};
+use featherbench_continua::{Load, Motion, Rod, energies, modes, momentum, rigid_limit, systems};
 use featherbench_dynamics::integrate::{DormandPrince, Tolerance};
 use featherbench_spatial::Vec3;
 use serde_json::json;
@@ -41,7 +41,7 @@ fn free(name: &'static str, n: usize) -> Case {
     let numbers = vec![error("momentum_drift", "conservation"), error("energy_drift", "conservation")];
     case("rod on a free hub", "momentum", name, json!({"elements": n, "time": 0.5}), numbers, move || {
         let (assembly, _) =
-            library::on_free_hub(1.5, 0.3, &Rod::textbook(2.0, 0.5, 1.0).map_err(failed)?, &element(name, n)?).map_err(failed)?;
+            systems::on_free_hub(1.5, 0.3, &Rod::textbook(2.0, 0.5, 1.0).map_err(failed)?, &element(name, n)?).map_err(failed)?;
         let robot = assembly.build().map_err(failed)?;
         let topology = robot.topology();
         let (mut s, mut rate) = (robot.rest(), vec![0.0; topology.nv()]);
@@ -68,7 +68,7 @@ fn flying(name: &'static str, n: usize) -> Case {
     let numbers = vec![error("momentum_error", "impulse"), error("angular_error", "impulse"), told("elastic_energy", "J")];
     case("flying rod", "momentum", name, json!({"elements": n, "bending": 100.0, "length": 10.0}), numbers, move || {
         let rod = Rod::textbook(100.0, 1.0, 10.0).map_err(failed)?;
-        let (assembly, tip) = library::on_free_hub(0.1, 0.1, &rod, &element(name, n)?).map_err(failed)?;
+        let (assembly, tip) = systems::on_free_hub(0.1, 0.1, &rod, &element(name, n)?).map_err(failed)?;
         let robot = assembly.build().map_err(failed)?;
         let (force, moment) = ([8.0, 1.0, 0.5], [0.0, 0.0, -8.0]);
         let at_tip = Load { moment, ..Load::force(tip.body, tip.placement.translation, force) };
@@ -105,10 +105,10 @@ fn flying(name: &'static str, n: usize) -> Case {
 fn heavy(name: &'static str, n: usize) -> Case {
     let numbers = vec![error("order_error", "theory"), error("clamped_error", "clamped rod"), told("order", "1")];
     case("rod on a heavy hub", "clamped_limit", name, json!({"elements": n, "masses": HUBS}), numbers, move || {
-        let (clamped, _) = library::cantilever(&rod()?, &element(name, n)?).map_err(failed)?;
+        let (clamped, _) = systems::cantilever(&rod()?, &element(name, n)?).map_err(failed)?;
         let wall = modes(&clamped, &clamped.rest(), &[]).map_err(failed)?.frequencies()[0];
         let miss = |mass: f64| -> Result<(f64, f64), NoAnswer> {
-            let (assembly, _) = library::on_free_hub(mass, mass, &rod()?, &element(name, n)?).map_err(failed)?;
+            let (assembly, _) = systems::on_free_hub(mass, mass, &rod()?, &element(name, n)?).map_err(failed)?;
             let robot = assembly.build().map_err(failed)?;
             let squares = modes(&robot, &robot.rest(), &[]).map_err(failed)?.squares;
             // Six free motions have ω² = 0 to rounding.
@@ -140,8 +140,8 @@ fn stiff(name: &'static str, n: usize, factor: f64, reach: bool) -> Case {
         json!({"elements": n, "factor": factor}),
         numbers,
         move || {
-            let (mut assembly, tip) = library::on_free_hub(1.0, 0.2, &rod()?, &element(name, n)?).map_err(failed)?;
-            library::carry(&mut assembly, &tip, 0.5, 0.1);
+            let (mut assembly, tip) = systems::on_free_hub(1.0, 0.2, &rod()?, &element(name, n)?).map_err(failed)?;
+            systems::carry(&mut assembly, &tip, 0.5, 0.1);
             let (q, v) = ([0.1, 0.2, -0.3, 0.0, 0.0, 0.6, 0.8], [0.1, 0.2, 0.3, 0.4, -0.5, 0.6]);
             let limit = rigid_limit(&assembly, factor, &q, &v, &[1.0, -2.0, 0.5, 0.3, 0.7, -0.4]).map_err(failed)?;
             // The rod's own share, some units of its deflection, and what rounding of K x can do: K x alone is in `floor`, and a hundred such sums are

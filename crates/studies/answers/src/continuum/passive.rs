@@ -1,7 +1,7 @@
 //! Passivity: M ≻ 0, K ⪰ 0, D ⪰ 0 by the eigenvalues of symmetric parts, and energy that never rises. A collocation basis fails.
 
 use super::{Case, NoAnswer, case, count, element, error, failed, told};
-use featherbench_continua::{Basis, Continuum, Material, Motion, Rod, Section, collocation, energies, library, mass_matrix, passivity};
+use featherbench_continua::{Basis, Continuum, Material, Motion, Rod, Section, collocation, energies, mass_matrix, passivity, systems};
 use featherbench_dynamics::integrate::{DormandPrince, Tolerance};
 use nalgebra::DMatrix;
 use serde_json::json;
@@ -29,7 +29,7 @@ pub(super) fn cases() -> Vec<Case> {
 fn beam(name: &str, terms: usize) -> Result<(Continuum, Vec<f64>), NoAnswer> {
     let material = Material { young: 60.0, poisson: 0.3, density: 1.0, damping: DAMPING };
     let rod = Rod::new(material, Section::rectangle(0.2, 0.3), 2.0).map_err(failed)?;
-    let (beam, _) = library::cantilever(&rod, &element(name, terms)?).map_err(failed)?;
+    let (beam, _) = systems::cantilever(&rod, &element(name, terms)?).map_err(failed)?;
     let bent = (0..beam.topology().nq()).map(|k| 0.2 / (1.0 + k as f64)).collect();
     Ok((beam, bent))
 }

@@ -4,7 +4,7 @@
 
 use super::{Case, NoAnswer, Number, case, count, element, error, failed, rod, told};
 use featherbench_continua::examples::{cable_arm, gripper};
-use featherbench_continua::{Assembly, Continuum, Load, Motion, Settings, Status, Tip, energies, equilibrium, library, modes};
+use featherbench_continua::{Assembly, Continuum, Load, Motion, Settings, Status, Tip, energies, equilibrium, modes, systems};
 use featherbench_dynamics::integrate::{DormandPrince, Tolerance};
 use serde_json::json;
 
@@ -87,7 +87,7 @@ fn elastica(alpha: f64) -> Case {
 fn mode(k: usize) -> Case {
     let numbers = points(told("frequency", "rad/s"), ELEMENTS + 1);
     case(format!("mode {}", k + 1), "shape", "sections", json!({"mode": k}), numbers, move || {
-        let (beam, tip) = library::cantilever(&rod()?, &element("sections", ELEMENTS)?).map_err(failed)?;
+        let (beam, tip) = systems::cantilever(&rod()?, &element("sections", ELEMENTS)?).map_err(failed)?;
         let found = modes(&beam, &beam.rest(), &[]).map_err(failed)?;
         let (assembly, named, _) = cantilever()?;
         let small: Vec<f64> = found.shapes.column(k).iter().map(|x| 1e-4 * x).collect();

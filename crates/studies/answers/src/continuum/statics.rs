@@ -2,7 +2,7 @@
 
 use super::{Case, Law, NoAnswer, case, count, element, error, failed, largest, rod, told};
 use featherbench_continua::known::{elastica, exact_modes_tip_ratio, tip_ratio};
-use featherbench_continua::{Hinges, Load, Settings, Status, equilibrium, library, newton, residual, tangent_stiffness};
+use featherbench_continua::{Hinges, Load, Settings, Status, equilibrium, newton, residual, systems, tangent_stiffness};
 use serde_json::json;
 use std::f64::consts::TAU;
 
@@ -35,7 +35,7 @@ pub(super) fn cases() -> Vec<Case> {
 
 /// The deflection under a small tip force over the exact one: Jᵀ K⁻¹ J by the exact tangent at rest, so that no term of second order is left.
 pub(super) fn compliance(name: &str, n: usize) -> Result<f64, NoAnswer> {
-    let (beam, tip) = library::cantilever(&rod()?, &element(name, n)?).map_err(failed)?;
+    let (beam, tip) = systems::cantilever(&rod()?, &element(name, n)?).map_err(failed)?;
     let rest = beam.rest();
     let load = Load::force(tip.body, tip.placement.translation, [0.0, 1.0, 0.0]);
     // At rest the residual is −Jᵀ F.
@@ -47,7 +47,7 @@ pub(super) fn compliance(name: &str, n: usize) -> Result<f64, NoAnswer> {
 
 /// The deflection of the tip under a dead force α.
 pub(super) fn deflection(name: &str, n: usize, alpha: f64) -> Result<f64, NoAnswer> {
-    let (beam, tip) = library::cantilever(&rod()?, &element(name, n)?).map_err(failed)?;
+    let (beam, tip) = systems::cantilever(&rod()?, &element(name, n)?).map_err(failed)?;
     let load = Load::force(tip.body, tip.placement.translation, [0.0, alpha, 0.0]);
     let found = equilibrium(&beam, &[load], &Settings::default()).map_err(failed)?;
     if found.status != Status::Converged {
@@ -119,7 +119,7 @@ fn table() -> Case {
 /// One element of constant curvature closes a circle under the end moment 2π EI/L.
 fn circle() -> Case {
     case("circle, end moment", "closed_circle", "sections", json!({"elements": 1}), vec![error("error", "closed form")], || {
-        let (beam, tip) = library::cantilever(&rod()?, &element("sections", 1)?).map_err(failed)?;
+        let (beam, tip) = systems::cantilever(&rod()?, &element("sections", 1)?).map_err(failed)?;
         let found = equilibrium(&beam, &[Load::moment(tip.body, [0.0, 0.0, TAU])], &Settings::default()).map_err(failed)?;
         if found.status != Status::Converged {
             return Err(failed(format!("{:?}", found.status)));
@@ -139,7 +139,7 @@ fn astray() -> Case {
     ];
     case("elastica, α = 10", "equilibria", "links_middle", json!({"alpha": 10.0, "elements": 16, "starts": 9}), numbers, || {
         let (alpha, n) = (10.0, 16);
-        let (beam, tip) = library::cantilever(&rod()?, &element("links_middle", n)?).map_err(failed)?;
+        let (beam, tip) = systems::cantilever(&rod()?, &element("links_middle", n)?).map_err(failed)?;
         let load = [Load::force(tip.body, tip.placement.translation, [0.0, alpha, 0.0])];
         let settings = Settings::default();
         let branch = equilibrium(&beam, &load, &settings).map_err(failed)?;

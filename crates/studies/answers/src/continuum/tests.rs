@@ -18,7 +18,7 @@ fn wrong_numbers_are_seen() {
     assert!(judged > 180, "{judged}");
 }
 
-/// The committed files are what the library describes: `cargo run -p featherbench-registry --example soft_robots` writes them.
+/// The committed files are what the code describes: `cargo run -p featherbench-registry --example soft_robots` writes them.
 #[test]
 fn files_of_soft_robots_are_those_of_the_library() {
     let models = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../datasets/models");

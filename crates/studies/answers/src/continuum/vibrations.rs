@@ -2,7 +2,7 @@
 
 use super::{Case, Law, NoAnswer, case, element, error, failed, largest, rod, told};
 use featherbench_continua::known::{bessel_zero, cantilever_root, laguerre_zeros, string_frequency_prefactor};
-use featherbench_continua::{Masses, library, mass_matrix, modes};
+use featherbench_continua::{Masses, mass_matrix, modes, systems};
 use nalgebra::SymmetricEigen;
 use serde_json::json;
 use std::f64::consts::PI;
@@ -35,7 +35,7 @@ pub(super) fn cases() -> Vec<Case> {
 
 /// ω of a cantilever with this element.
 pub(super) fn frequencies(name: &str, n: usize) -> Result<Vec<f64>, NoAnswer> {
-    let (beam, _) = library::cantilever(&rod()?, &element(name, n)?).map_err(failed)?;
+    let (beam, _) = systems::cantilever(&rod()?, &element(name, n)?).map_err(failed)?;
     Ok(modes(&beam, &beam.rest(), &[]).map_err(failed)?.frequencies())
 }
 
@@ -81,7 +81,7 @@ fn laguerre() -> Case {
         let (gravity, link) = (9.81, 0.3);
         let mut missed = Vec::new();
         for n in MASSES {
-            let (string, _) = library::hanging_string(n, Masses::Ends, n as f64 * link, 2.0, gravity).map_err(failed)?;
+            let (string, _) = systems::hanging_string(n, Masses::Ends, n as f64 * link, 2.0, gravity).map_err(failed)?;
             let squares = modes(&string, &string.rest(), &[]).map_err(failed)?.squares;
             missed.extend(squares.iter().zip(laguerre_zeros(n)).map(|(square, zero)| square / (gravity / link * zero) - 1.0));
         }
@@ -116,14 +116,14 @@ fn monomials(terms: usize, due: f64, digits: f64) -> Case {
 
 /// The condition of M of so many monomials.
 pub(super) fn mass_condition(terms: usize) -> Result<f64, NoAnswer> {
-    let (beam, _) = library::cantilever(&rod()?, &element("monomials", terms)?).map_err(failed)?;
+    let (beam, _) = systems::cantilever(&rod()?, &element("monomials", terms)?).map_err(failed)?;
     let mass = SymmetricEigen::new(mass_matrix(&beam, &beam.rest()).map_err(failed)?).eigenvalues;
     Ok(mass.max() / mass.min())
 }
 
 /// ω² of a hanging string of this many links, increasing, with g = L = 1.
 pub(super) fn string_squares(masses: Masses, n: usize) -> Result<Vec<f64>, NoAnswer> {
-    let (string, _) = library::hanging_string(n, masses, 1.0, 1.0, 1.0).map_err(failed)?;
+    let (string, _) = systems::hanging_string(n, masses, 1.0, 1.0, 1.0).map_err(failed)?;
     Ok(modes(&string, &string.rest(), &[]).map_err(failed)?.squares)
 }
 

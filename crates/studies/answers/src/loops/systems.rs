@@ -1,8 +1,8 @@
 //! The robots of the study: descriptions with loops, states on them, motions, and what is known.
 
 use featherbench_bench::{LoopDrive, LoopSpring, LoopStates, LoopSteps, NoAnswer};
-use featherbench_constrained::library::{Biped, Bricard, Ladder, Pair, Squeezer, Tie};
 use featherbench_constrained::stabilise::Projection;
+use featherbench_constrained::systems::{Biped, Bricard, Ladder, Pair, Squeezer, Tie};
 use featherbench_constrained::{Mechanism, accelerations};
 use featherbench_model::{Description, integrate, neutral};
 use featherbench_robots::Random;
@@ -13,7 +13,7 @@ use featherbench_study::known::{failed, largest};
 const STATES: usize = 20;
 /// How near the flat parallelogram is asked about: angles of 10^−1 to 10^−8 rad beside it.
 pub(super) const NEAR: std::ops::RangeInclusive<i32> = 1..=8;
-/// An inertia about a rod's own axis, of that about the others. A rod of the library has none, and MuJoCo takes no such body.
+/// An inertia about a rod's own axis, of that about the others. A rod of the crate has none, and MuJoCo takes no such body.
 const THICK: f64 = 0.01;
 
 /// A robot with loops.

@@ -8,7 +8,7 @@ use super::systems::{PLANS, System, errors, scalar};
 use super::{STUDY, Settings};
 use crate::tests::gates;
 use featherbench_bench::{Cell, LoopStates, NoAnswer, OWN, Outcome};
-use featherbench_constrained::library::{Ladder, Squeezer};
+use featherbench_constrained::systems::{Ladder, Squeezer};
 use featherbench_results::{Row, Verdict};
 use featherbench_robots::Random;
 use serde_json::json;

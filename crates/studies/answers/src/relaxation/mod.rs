@@ -1,7 +1,7 @@
 //! Relaxation: does another solver find the velocities that our `Convex` finds?
 //!
 //! The convex relaxation of a contact problem, minimise ½ λᵀG λ + bᵀλ over the friction cones, has one velocity c = G λ + b, whatever its
-//! impulses are. An engine that offers the relaxation (`contact_relaxations` of the protocol) solves every problem of the library that our
+//! impulses are. An engine that offers the relaxation (`contact_relaxations` of the protocol) solves every problem of the crate that our
 //! solver takes, and those of robots that land and stand. Velocities are compared, each in the size of the largest |b|.
 //!
 //! A problem is given free of units and of μ: with D = diag(1, μ₁, μ₂) of each contact, x = D⁻¹λ has the cone x_n ≥ |x_t|, G' = D G D and
@@ -11,7 +11,7 @@ pub(crate) mod words;
 
 use crate::contact::standing::Stand;
 use featherbench_bench::{Cell, ContactProblems, Context, Finished, NoAnswer, OWN, Outcome, Study, hash};
-use featherbench_contact::{Convex, Friction, Problem, Solver, library};
+use featherbench_contact::{Convex, Friction, Problem, Solver, systems};
 use featherbench_results::{Row, Verdict, canonical_json};
 use featherbench_study::known::{failed, largest};
 use featherbench_study::{Entry, Made, Setup, no_section};
@@ -47,10 +47,10 @@ fn of_suite(setup: &Setup) -> Made {
     Ok(setup.suite.settings::<Settings>(STUDY)?.map(|settings| Box::new(Relaxation { settings }) as _))
 }
 
-/// The names of all sets of problems: of the library, and of standing robots.
+/// The names of all sets of problems: of the crate, and of standing robots.
 fn names() -> Vec<String> {
-    let library = library::all().unwrap_or_default();
-    library.iter().map(|problem| problem.name().to_owned()).chain(Stand::ALL.iter().map(|stand| stand.name())).collect()
+    let problems = systems::all().unwrap_or_default();
+    problems.iter().map(|problem| problem.name().to_owned()).chain(Stand::ALL.iter().map(|stand| stand.name())).collect()
 }
 
 /// The problems of a name, all of one size.
@@ -60,7 +60,7 @@ fn problems(name: &str, seed: u64) -> Result<Vec<Problem>, NoAnswer> {
         problems.retain(|problem| problem.contacts().len() == stand.contacts());
         return Ok(problems);
     }
-    Ok(library::all().map_err(failed)?.into_iter().filter(|problem| problem.name() == name).collect())
+    Ok(systems::all().map_err(failed)?.into_iter().filter(|problem| problem.name() == name).collect())
 }
 
 /// A problem free of units, and the velocities that our solver finds.
@@ -209,7 +209,7 @@ mod tests {
     #[test]
     fn problems_keep_their_velocities() {
         let (mut taken, mut refused) = (0, 0);
-        for problem in library::all().unwrap() {
+        for problem in systems::all().unwrap() {
             let Ok(relaxed) = Relaxed::of(&problem) else {
                 refused += 1;
                 continue;

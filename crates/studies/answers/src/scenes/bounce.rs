@@ -10,7 +10,7 @@
 use super::rows::{blank, without_answer};
 use super::{BOUNCE, cell, of_engine};
 use featherbench_bench::{Cell, Context, Gates, NoAnswer, OWN, Outcome};
-use featherbench_hybrid::library::BouncingBall;
+use featherbench_hybrid::systems::BouncingBall;
 use featherbench_hybrid::{Settings, Start, sensitivity, simulate};
 use featherbench_results::{Row, Verdict};
 use featherbench_scenes::{Body, Scene};
@@ -73,7 +73,7 @@ pub(super) fn evaluate(context: &Context, cell: &Cell) -> Result<Vec<f64>, NoAns
     Ok(values)
 }
 
-/// By the saltation matrix of the library of hybrid systems.
+/// By the saltation matrix of `featherbench_hybrid`.
 fn own() -> Result<Vec<f64>, NoAnswer> {
     let failed = |error: featherbench_hybrid::HybridError| NoAnswer::Failed(error.to_string());
     let start = Start { mode: 0, time: 0.0, state: vec![HEIGHT, 0.0, 0.0] };

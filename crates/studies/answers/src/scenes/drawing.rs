@@ -137,7 +137,7 @@ fn contact(view: &View, push: &Push, scene: &Scene, strongest: f64) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::drawing;
-    use featherbench_scenes::{OwnSolver, library::Table, simulate};
+    use featherbench_scenes::{OwnSolver, simulate, systems::Table};
 
     /// A table in side view has four cones and four arrows, all inside the drawing.
     #[test]

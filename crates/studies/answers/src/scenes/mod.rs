@@ -1,6 +1,6 @@
 //! Scenes: what do engines make of bodies in contact whose motion is known?
 //!
-//! The scenes are those of `featherbench_scenes::library`. Each engine moves them by each of its variants, a contact model with a solver, at
+//! The scenes are those of `featherbench_scenes::systems`. Each engine moves them by each of its variants, a contact model with a solver, at
 //! several steps. Of each number of a motion there is its error against rigid mechanics at each step, and the bias: what a line through the
 //! values at all steps leaves at dt = 0. Errors of other engines inform. A *law* is what an engine's own contact model should do where that
 //! is known (friction pyramids, creep); it is judged.
@@ -21,7 +21,7 @@ pub(crate) mod words;
 
 use featherbench_bench::{Cell, Context, Finished, Identity, NoAnswer, Outcome, Study, hash};
 use featherbench_results::{Row, canonical_json};
-use featherbench_scenes::{Question, library};
+use featherbench_scenes::{Question, systems};
 use featherbench_study::{Entry, Made, Setup};
 use movers::Mover;
 use serde::Deserialize;
@@ -57,7 +57,7 @@ pub const ENTRY: Entry = Entry { name: "scenes", make: of_suite, sections: secti
 /// The study, if the suite asks for it.
 fn of_suite(setup: &Setup) -> Made {
     let settings = setup.suite.settings::<Settings>(STUDY)?;
-    Ok(settings.map(|settings| Box::new(Scenes { settings, questions: library::all() }) as _))
+    Ok(settings.map(|settings| Box::new(Scenes { settings, questions: systems::all() }) as _))
 }
 
 impl Scenes {

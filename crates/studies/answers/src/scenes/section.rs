@@ -8,7 +8,7 @@ use featherbench_bench::OWN;
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, opener};
 use featherbench_results::{Row, RunInfo, Verdict};
-use featherbench_scenes::library::{BoxOnBalls, BoxStack, Incline, Rod, Standing, Table};
+use featherbench_scenes::systems::{BoxOnBalls, BoxStack, Incline, Rod, Standing, Table};
 use featherbench_scenes::{OwnSolver, Question, simulate};
 use maud::{Markup, html};
 

@@ -4,11 +4,11 @@ use super::{MOTION, NONE, Scenes, Settings, cell, movers::Mover, rows};
 use crate::tests::gates;
 use featherbench_bench::{Cell, Context, NoAnswer, Outcome, Study};
 use featherbench_results::{Row, Verdict};
-use featherbench_scenes::{Question, library};
+use featherbench_scenes::{Question, systems};
 use serde_json::json;
 
 fn question(name: &str) -> Question {
-    library::all().into_iter().find(|question| question.scene.name == name).unwrap()
+    systems::all().into_iter().find(|question| question.scene.name == name).unwrap()
 }
 
 fn asked(scene: &str, engine: &str, method: &str) -> (Question, Cell) {
@@ -95,7 +95,7 @@ fn movers_have_different_names() {
 fn an_absent_engine_is_a_row() {
     let gates = gates();
     let settings = Settings { engines: vec!["rapier".into(), "dart".into()] };
-    let study = Scenes { settings, questions: library::all() };
+    let study = Scenes { settings, questions: systems::all() };
     let context = Context { robots: &[], engines: &[], gates: &gates, seed: 1 };
     let cells = study.plan(&context);
     assert!(cells.len() == 2 && cells.iter().all(|cell| cell.method == NONE));

@@ -5,7 +5,7 @@
 
 use super::{Case, count, deviation, error, failed, largest, told};
 use featherbench_bench::NoAnswer;
-use featherbench_hybrid::library::BouncingBall;
+use featherbench_hybrid::systems::BouncingBall;
 use featherbench_hybrid::{Settings, Start, simulate};
 use featherbench_model::Distribution;
 use featherbench_uncertainty::{Recurrence, Sampling, Space, Variable, mixture, normal_cdf};

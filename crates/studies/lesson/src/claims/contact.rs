@@ -1,8 +1,8 @@
 //! §3: existence and uniqueness, and what complementarity of positions leaves open.
 
 use crate::claim::{Claim, Failure, Holds, Number};
-use featherbench_contact::library::{Answers, PainleveRod};
 use featherbench_contact::solver;
+use featherbench_contact::systems::{Answers, PainleveRod};
 
 /// How many forces enumeration finds.
 fn found(rod: &PainleveRod) -> Result<usize, Failure> {

@@ -3,7 +3,7 @@
 //! loops = joints − moving links. Grübler: mobility = Σ freedom − d·loops, d = 3 in a plane and 6 in space; the truth is dofs − rank J.
 
 use crate::claim::{Claim, Failure, Holds, Number};
-use featherbench_constrained::library::{Bricard, Ladder};
+use featherbench_constrained::systems::{Bricard, Ladder};
 use featherbench_constrained::{BadGraph, Edge, Graph, Mobility};
 
 fn hinge(name: &str, parent: Option<usize>, child: Option<usize>, cut: bool) -> Edge {

@@ -9,7 +9,7 @@
 //! First route: the saltation matrix and the variational equation of `featherbench_hybrid`. Second: closed forms, by dual numbers.
 
 use crate::claim::{Claim, Failure, Holds, Number};
-use featherbench_hybrid::library::BouncingBall;
+use featherbench_hybrid::systems::BouncingBall;
 use featherbench_hybrid::{Direction, Hybrid, Saltation, Settings, Start, sensitivity, simulate};
 use featherbench_spatial::{Dual, Real};
 
@@ -27,14 +27,6 @@ impl Hybrid for Scaled {
 
     fn parameters(&self) -> usize {
         4
-    }
-
-    fn modes(&self) -> usize {
-        1
-    }
-
-    fn guards(&self, _: usize) -> usize {
-        1
     }
 
     fn direction(&self, _: usize, _: usize) -> Direction {

@@ -34,7 +34,7 @@ impl Kane {
     /// The impact of the tip.
     ///
     /// ```
-    /// let problem = featherbench_contact::library::Kane::default().problem()?;
+    /// let problem = featherbench_contact::systems::Kane::default().problem()?;
     /// assert!((problem.free()[0] + 0.134202014).abs() < 1e-9);
     /// # Ok::<(), featherbench_contact::Malformed>(())
     /// ```

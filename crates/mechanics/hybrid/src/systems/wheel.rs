@@ -18,7 +18,7 @@ use featherbench_spatial::Real;
 ///
 /// ```
 /// // On the level nothing replaces what the impacts take; with spokes at 90° an impact takes everything.
-/// use featherbench_hybrid::library::RimlessWheel;
+/// use featherbench_hybrid::systems::RimlessWheel;
 /// assert_eq!(RimlessWheel::limit_cycle(&[9.81, 0.0, 0.3]), 0.0);
 /// assert!(RimlessWheel::multiplier(&[9.81, 0.1, std::f64::consts::FRAC_PI_4]) < 1e-30);
 /// ```
@@ -53,14 +53,6 @@ impl Hybrid for RimlessWheel {
 
     fn parameters(&self) -> usize {
         3
-    }
-
-    fn modes(&self) -> usize {
-        1
-    }
-
-    fn guards(&self, _: usize) -> usize {
-        1
     }
 
     fn direction(&self, _: usize, _: usize) -> Direction {

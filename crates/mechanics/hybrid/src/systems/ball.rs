@@ -1,6 +1,6 @@
 //! A ball that bounces on the ground, with Newton's restitution, until infinitely many impacts are over.
 
-use crate::system::{Direction, Hybrid};
+use crate::system::Hybrid;
 use featherbench_spatial::Real;
 
 /// A point above the ground: x = (height y in m, velocity v in m/s upwards, path s in m), θ = (g, e).
@@ -15,7 +15,7 @@ use featherbench_spatial::Real;
 ///
 /// ```
 /// // t₁(1 + e)/(1 − e) with t₁ = 1 s: three times that for e = ½. The path is 5/3 of the height.
-/// use featherbench_hybrid::library::BouncingBall;
+/// use featherbench_hybrid::systems::BouncingBall;
 /// assert_eq!(BouncingBall::zeno_time(5.0, 10.0, 0.5), 3.0);
 /// assert!((BouncingBall::path(3.0_f64, 0.5) - 5.0).abs() < 1e-15);
 /// ```
@@ -58,14 +58,6 @@ impl Hybrid for BouncingBall {
 
     fn modes(&self) -> usize {
         2
-    }
-
-    fn guards(&self, _: usize) -> usize {
-        1
-    }
-
-    fn direction(&self, _: usize, _: usize) -> Direction {
-        Direction::Falling
     }
 
     fn flow<T: Real>(&self, mode: usize, _: T, x: &[T], theta: &[T], rate: &mut [T]) {

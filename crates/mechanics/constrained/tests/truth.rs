@@ -1,8 +1,8 @@
 //! Accelerations in double-double arithmetic, against closed forms and the methods in doubles.
 
 use crate::common::assert_within;
-use featherbench_constrained::library::{Biped, Bricard, Ladder, Pair, Squeezer, Tie};
 use featherbench_constrained::stabilise::Projection;
+use featherbench_constrained::systems::{Biped, Bricard, Ladder, Pair, Squeezer, Tie};
 use featherbench_constrained::{Constrained, Error, Kkt, Mechanism, RangeSpace, accelerations};
 use featherbench_model::{integrate, neutral};
 use featherbench_robots::Random;
@@ -77,7 +77,7 @@ fn digits_hold_beside_the_singularity() {
     }
 }
 
-/// The methods in doubles agree with it on every robot of the library, with redundant rows and forces.
+/// The methods in doubles agree with it on every robot of `systems`, with redundant rows and forces.
 #[test]
 fn methods_in_doubles_agree() {
     let mut random = Random::new(5, 0);

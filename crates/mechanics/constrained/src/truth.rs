@@ -11,19 +11,19 @@
 //! [`Constrained`](crate::Constrained). Cost: n³/6 + n² m / 2 + m r². It allocates.
 
 use crate::constraint::Constraints;
+use crate::delassus::{cholesky, forward};
 use crate::error::Error;
 use crate::rows::Rows;
-use featherbench_dynamics::{DimensionError, NotPositiveDefinite, bias_force, mass_matrix};
+use featherbench_dynamics::{DimensionError, bias_force, mass_matrix};
 use featherbench_model::Model;
 use featherbench_spatial::{DoubleDouble, Real};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 /// A pivot of G that is zero, of the first. States are doubles: they lie 10⁻¹⁶ beside the constraints, where a redundant row keeps 10⁻¹⁶ of its
 /// length and 10⁻³² of its pivot. An independent row has 10⁻²⁰ where it is 10⁻¹⁰ of its length from the others.
 pub const REDUNDANT: f64 = 1e-24;
 
 type Matrix = DMatrix<DoubleDouble>;
-type Vector = DVector<DoubleDouble>;
 
 /// v̇ at a state, rounded once.
 ///
@@ -31,7 +31,7 @@ type Vector = DVector<DoubleDouble>;
 /// [`Error`]: an argument does not fit or is not finite, a dof meets no inertia, or a weld is half a turn off.
 ///
 /// ```
-/// use featherbench_constrained::{accelerations, library::Ladder};
+/// use featherbench_constrained::{accelerations, systems::Ladder};
 /// let ladder = Ladder::default();
 /// let four_bar = ladder.mechanism()?;
 /// let found = accelerations(&four_bar.model, &four_bar.constraints, &ladder.spread(0.5), &ladder.spread(0.3), &[0.0; 3])?;
@@ -46,54 +46,24 @@ pub fn accelerations(model: &Model<f64>, constraints: &Constraints, q: &[f64], v
     let (q, v) = (wide(q), wide(v));
     let mut rows = Rows::<DoubleDouble>::new(constraints);
     rows.run(model, constraints, &q, &v)?;
-    let mass = mass_matrix(model, &q)?;
-    let lower = cholesky(Matrix::from_fn(n, n, |row, column| mass.get(row, column)))?;
+    let lower = cholesky(&mass_matrix(model, &q)?)?;
     let bias = bias_force(model, &q, &v)?;
-    let force = Vector::from_iterator(n, tau.iter().zip(bias).map(|(tau, h)| DoubleDouble::from_f64(*tau) - h));
-    let jacobian = Matrix::from_row_slice(constraints.rows(), n, rows.jacobian());
+    let mut start: Vec<_> = tau.iter().zip(bias).map(|(tau, h)| DoubleDouble::from_f64(*tau) - h).collect();
     // Y = L⁻¹Jᵀ and w = L⁻¹(τ − h), so that G = YᵀY and J M⁻¹(τ − h) = Yᵀw.
-    let mut half = jacobian.transpose();
+    let mut half = Matrix::from_column_slice(n, constraints.rows(), rows.jacobian());
     half.column_iter_mut().for_each(|mut column| forward(&lower, column.as_mut_slice()));
-    let mut start = force;
-    forward(&lower, start.as_mut_slice());
-    let due: Vec<_> = rows.biases().zip(half.column_iter()).map(|(bias, y)| -bias - dot(y.as_slice(), start.as_slice())).collect();
+    forward(&lower, &mut start);
+    let due: Vec<_> = rows.biases().zip(half.column_iter()).map(|(bias, y)| -bias - dot(y.as_slice(), &start)).collect();
     let lambda = pivoted(&half, due);
     for (column, lambda) in half.column_iter().zip(lambda) {
         start.iter_mut().zip(column.iter()).for_each(|(w, y)| *w = y.mul_add(lambda, *w));
     }
-    backward(&lower, start.as_mut_slice());
+    backward(&lower, &mut start);
     Ok(start.iter().map(|x| x.to_f64()).collect())
 }
 
 fn dot(a: &[DoubleDouble], b: &[DoubleDouble]) -> DoubleDouble {
     a.iter().zip(b).fold(DoubleDouble::zero(), |sum, (a, b)| a.mul_add(*b, sum))
-}
-
-/// L with L Lᵀ = M, in the lower triangle.
-fn cholesky(mut m: Matrix) -> Result<Matrix, Error> {
-    for column in 0..m.nrows() {
-        for row in column..m.nrows() {
-            let sum = (0..column).fold(m[(row, column)], |sum, k| (-m[(row, k)]).mul_add(m[(column, k)], sum));
-            if row == column {
-                let pivot = sum.to_f64();
-                if pivot.is_nan() || pivot <= 0.0 {
-                    return Err(NotPositiveDefinite { dof: column, pivot }.into());
-                }
-                m[(row, column)] = sum.sqrt();
-            } else {
-                m[(row, column)] = sum / m[(column, column)];
-            }
-        }
-    }
-    Ok(m)
-}
-
-/// x ← L⁻¹x.
-fn forward(lower: &Matrix, x: &mut [DoubleDouble]) {
-    for row in 0..x.len() {
-        let sum = (0..row).fold(x[row], |sum, k| (-lower[(row, k)]).mul_add(x[k], sum));
-        x[row] = sum / lower[(row, row)];
-    }
 }
 
 /// x ← L⁻ᵀx.

@@ -1,4 +1,4 @@
-//! What the robots of the library are made of: rods, hinges and loop hinges.
+//! What these robots are made of: rods, hinges and loop hinges.
 
 use featherbench_model::{BodyDescription, JointDescription, JointType, Loop, LoopEnd, LoopKind, LoopMotion, Placement};
 

@@ -1,6 +1,6 @@
 //! A ball on a table that moves: guard and reset depend on time.
 
-use crate::system::{Direction, Hybrid};
+use crate::system::Hybrid;
 use featherbench_spatial::Real;
 
 /// A point above a table at w(t) = A sin Ωt: x = (height y in m, velocity v in m/s upwards), θ = (g, e, A, Ω).
@@ -14,7 +14,7 @@ use featherbench_spatial::Real;
 ///
 /// ```
 /// // A table at rest is the ground.
-/// use featherbench_hybrid::library::MovingTable;
+/// use featherbench_hybrid::systems::MovingTable;
 /// assert_eq!(MovingTable::saltation(0.3, -2.0, &[10.0, 0.5, 0.0, 1.0]), [-0.5, 0.0, 7.5, -0.5]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,18 +43,6 @@ impl Hybrid for MovingTable {
 
     fn parameters(&self) -> usize {
         4
-    }
-
-    fn modes(&self) -> usize {
-        1
-    }
-
-    fn guards(&self, _: usize) -> usize {
-        1
-    }
-
-    fn direction(&self, _: usize, _: usize) -> Direction {
-        Direction::Falling
     }
 
     fn flow<T: Real>(&self, _: usize, _: T, x: &[T], theta: &[T], rate: &mut [T]) {

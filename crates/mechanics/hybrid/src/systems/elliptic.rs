@@ -8,7 +8,7 @@ use crate::error::HybridError;
 ///
 /// ```
 /// // R_F(x, x, x) = 1/√x, and R_F(0, 1, 1) = π/2.
-/// use featherbench_hybrid::library::carlson;
+/// use featherbench_hybrid::systems::carlson;
 /// assert!((carlson(4.0, 4.0, 4.0)? - 0.5).abs() < 1e-16);
 /// assert!((carlson(0.0, 1.0, 1.0)? - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
 /// # Ok::<(), featherbench_hybrid::HybridError>(())
@@ -45,7 +45,7 @@ pub fn carlson(x: f64, y: f64, z: f64) -> Result<f64, HybridError> {
 ///
 /// ```
 /// // F(φ, 0) = φ
-/// let angle = featherbench_hybrid::library::incomplete(0.5, 0.0)?;
+/// let angle = featherbench_hybrid::systems::incomplete(0.5, 0.0)?;
 /// assert!((angle - std::f64::consts::FRAC_PI_6).abs() < 1e-15);
 /// # Ok::<(), featherbench_hybrid::HybridError>(())
 /// ```

@@ -18,7 +18,7 @@ use featherbench_spatial::Real;
 ///
 /// ```
 /// // With S = F a slip is a whole oscillation, and nothing sticks.
-/// use featherbench_hybrid::library::StickSlip;
+/// use featherbench_hybrid::systems::StickSlip;
 /// assert_eq!(StickSlip::slip_time(&[1.0, 1.0, 0.5, 2.0, 2.0]), std::f64::consts::TAU);
 /// assert_eq!(StickSlip::stick_time(&[1.0, 1.0, 0.5, 2.0, 2.0]), 0.0);
 /// ```
@@ -82,10 +82,6 @@ impl Hybrid for StickSlip {
             (0, _) => theta[1] * x[0] + theta[3],
             _ => x[1] - theta[2],
         }
-    }
-
-    fn reset<T: Real>(&self, _: usize, _: usize, _: T, x: &[T], _: &[T], after: &mut [T]) {
-        after.copy_from_slice(x);
     }
 
     fn target(&self, mode: usize, guard: usize, _: f64, after: &[f64], theta: &[f64]) -> usize {

@@ -47,7 +47,7 @@ impl Ladder {
     /// [`BadMechanism`] when a mass or length makes no sense.
     ///
     /// ```
-    /// use featherbench_constrained::library::Ladder;
+    /// use featherbench_constrained::systems::Ladder;
     /// let mechanism = Ladder::default().mechanism()?;
     /// assert_eq!((mechanism.graph.loops(), mechanism.graph.gruebler(3)), (1, 1));
     /// # Ok::<(), featherbench_constrained::BadMechanism>(())

@@ -76,7 +76,7 @@ impl Squeezer {
     /// [`BadMechanism`] when a mass or length makes no sense.
     ///
     /// ```
-    /// use featherbench_constrained::{Mobility, library::Squeezer};
+    /// use featherbench_constrained::{Mobility, systems::Squeezer};
     /// let squeezer = Squeezer::default().mechanism()?;
     /// let start = Mobility::at(&squeezer.model, &squeezer.constraints, &Squeezer::start())?;
     /// assert!(start.residual < 1e-16);

@@ -34,7 +34,7 @@ impl Bricard {
     /// [`BadMechanism`] when a mass or length makes no sense.
     ///
     /// ```
-    /// use featherbench_constrained::{Mobility, library::Bricard};
+    /// use featherbench_constrained::{Mobility, systems::Bricard};
     /// let bricard = Bricard::default().mechanism()?;
     /// assert_eq!(bricard.graph.gruebler(6), 0);
     /// assert_eq!(Mobility::at(&bricard.model, &bricard.constraints, &[0.0; 5])?.freedom(), 1);

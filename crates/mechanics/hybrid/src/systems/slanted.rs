@@ -1,6 +1,6 @@
 //! A ball between slanted walls, in the plane.
 
-use crate::system::{Direction, Hybrid};
+use crate::system::Hybrid;
 use featherbench_spatial::Real;
 
 /// A point between straight walls: x = (p_x, p_y in m, v_x, v_y in m/s), θ = (g, e, then φ, d of each wall).
@@ -13,7 +13,7 @@ use featherbench_spatial::Real;
 ///
 /// ```
 /// // A wall to the right of which the ball is: gravity runs along it, and the ball passes in y.
-/// use featherbench_hybrid::library::SlantedBox;
+/// use featherbench_hybrid::systems::SlantedBox;
 /// let known = [[-0.5, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, -0.5, 0.0], [0.0, 0.0, 0.0, 1.0]];
 /// assert_eq!(SlantedBox::saltation(10.0, 0.5, 0.0, [-1.0, 3.0]), known);
 /// ```
@@ -58,16 +58,8 @@ impl Hybrid for SlantedBox {
         2 + 2 * self.walls
     }
 
-    fn modes(&self) -> usize {
-        1
-    }
-
     fn guards(&self, _: usize) -> usize {
         self.walls
-    }
-
-    fn direction(&self, _: usize, _: usize) -> Direction {
-        Direction::Falling
     }
 
     fn flow<T: Real>(&self, _: usize, _: T, x: &[T], theta: &[T], rate: &mut [T]) {

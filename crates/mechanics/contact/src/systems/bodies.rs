@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 /// It slides until t* = 2v₀/(7μg) and rolls with 5v₀/7 afterwards. Friction has one direction throughout, so one step is exact.
 ///
 /// ```
-/// let sphere = featherbench_contact::library::SlidingSphere::default();
+/// let sphere = featherbench_contact::systems::SlidingSphere::default();
 /// assert!((sphere.slides() - 2.0 * 5.0 / (7.0 * 0.3 * 9.81)).abs() < 1e-15);
 /// assert!((sphere.speed_after() - 25.0 / 7.0).abs() < 1e-15);
 /// ```
@@ -72,7 +72,7 @@ impl SlidingSphere {
 /// balls with little load may slip, and the box is faster.
 ///
 /// ```
-/// let scene = featherbench_contact::library::BoxOnBalls::default();
+/// let scene = featherbench_contact::systems::BoxOnBalls::default();
 /// assert_eq!(scene.acceleration(), 8.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -145,7 +145,7 @@ impl BoxOnBalls {
     /// The forces while nothing slips and every ball carries the same load, in the order of the problem's rows.
     ///
     /// ```
-    /// use featherbench_contact::{Residuals, library::BoxOnBalls};
+    /// use featherbench_contact::{Residuals, systems::BoxOnBalls};
     /// let scene = BoxOnBalls::default();
     /// assert!(Residuals::of(&scene.problem()?, &scene.even_forces()).largest() < 1e-12);
     /// # Ok::<(), featherbench_contact::Malformed>(())
@@ -165,7 +165,7 @@ impl BoxOnBalls {
 /// Source: G. W. Housner, *The behavior of inverted pendulum structures during earthquakes* (1963).
 ///
 /// ```
-/// let block = featherbench_contact::library::RockingBlock::default();
+/// let block = featherbench_contact::systems::RockingBlock::default();
 /// assert!((block.ratio() - 31.0 / 34.0).abs() < 1e-15);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

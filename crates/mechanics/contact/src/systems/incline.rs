@@ -20,7 +20,7 @@ pub enum Section {
 /// A point on an inclined plane during one step. Downhill is at the angle `heading` from t1.
 ///
 /// ```
-/// use featherbench_contact::library::Incline;
+/// use featherbench_contact::systems::Incline;
 /// use featherbench_contact::{Newton, Solver};
 /// let incline = Incline::default();
 /// let solution = Newton::default().solve(&incline.problem()?)?;

@@ -33,7 +33,7 @@ impl Table {
     /// The problem: dofs z and two tilts of the plate about its centre of mass.
     ///
     /// ```
-    /// use featherbench_contact::{Enumeration, Solver, library::Table};
+    /// use featherbench_contact::{Enumeration, Solver, systems::Table};
     /// let table = Table::default();
     /// let solution = Enumeration::default().solve(&table.problem()?)?;
     /// // The ends of the line of all forces: each has a leg without load.
@@ -83,7 +83,7 @@ impl Table {
 /// Flat rectangular feet, each a free rigid body with a load above it: four spatial contacts per foot, 12 rows of rank 6.
 ///
 /// ```
-/// let problem = featherbench_contact::library::Feet::default().problem()?;
+/// let problem = featherbench_contact::systems::Feet::default().problem()?;
 /// assert_eq!(problem.rows(), 24);
 /// assert_eq!(problem.delassus().rank(1e-10), 12);
 /// # Ok::<(), featherbench_contact::Malformed>(())

@@ -76,7 +76,7 @@ impl Pair {
     /// [`BadMechanism`] when a mass or length makes no sense.
     ///
     /// ```
-    /// use featherbench_constrained::library::{Pair, Tie};
+    /// use featherbench_constrained::systems::{Pair, Tie};
     /// let pair = Pair::new(Tie::Rod);
     /// assert_eq!(pair.mechanism()?.model.topology.nv(), 2);
     /// assert_eq!(pair.configuration(0.2), [0.2, 0.2]);

@@ -27,7 +27,7 @@ impl Stack {
     /// The problem: contact k is below body k.
     ///
     /// ```
-    /// use featherbench_contact::{Lemke, Solver, library::Stack};
+    /// use featherbench_contact::{Lemke, Solver, systems::Stack};
     /// let stack = Stack::two(1000.0);
     /// let solution = Lemke::default().solve(&stack.problem()?)?;
     /// let found = &solution.point().ok_or("no answer")?.impulses;
@@ -105,7 +105,7 @@ impl Cradle {
     ///
     /// ```
     /// use featherbench_contact::impact::{Law, impact, sequence};
-    /// use featherbench_contact::library::Cradle;
+    /// use featherbench_contact::systems::Cradle;
     /// let cradle = Cradle::default();
     /// let problem = cradle.problem()?;
     /// // One after another: the right ball flies off. At once: all move.

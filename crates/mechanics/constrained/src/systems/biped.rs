@@ -59,7 +59,7 @@ impl Biped {
     /// [`BadMechanism`] when a mass or length makes no sense.
     ///
     /// ```
-    /// use featherbench_constrained::{Mobility, library::Biped};
+    /// use featherbench_constrained::{Mobility, systems::Biped};
     /// let biped = Biped::default().mechanism()?;
     /// let q = featherbench_model::neutral::<f64>(&biped.model.topology);
     /// let mobility = Mobility::at(&biped.model, &biped.constraints, &q)?;

@@ -1,6 +1,6 @@
 //! A sphere that slides until it rolls.
 
-use crate::system::{Direction, Hybrid};
+use crate::system::Hybrid;
 use featherbench_spatial::Real;
 
 /// A uniform sphere on the ground: x = (position in m, velocity v in m/s, rate ω in rad/s), θ = (μ, g, radius ρ).
@@ -13,7 +13,7 @@ use featherbench_spatial::Real;
 /// No reset changes the state.
 ///
 /// ```
-/// use featherbench_hybrid::library::SlidingSphere;
+/// use featherbench_hybrid::systems::SlidingSphere;
 /// assert_eq!(SlidingSphere::rolling_time(7.0, 0.5, 10.0), 0.4);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,10 +43,6 @@ impl Hybrid for SlidingSphere {
         1 - mode
     }
 
-    fn direction(&self, _: usize, _: usize) -> Direction {
-        Direction::Falling
-    }
-
     fn flow<T: Real>(&self, mode: usize, _: T, x: &[T], theta: &[T], rate: &mut [T]) {
         let push = if mode == 0 { theta[0] * theta[1] } else { T::zero() };
         (rate[0], rate[1], rate[2]) = (x[1], -push, T::from_f64(2.5) * push / theta[2]);
@@ -54,10 +50,6 @@ impl Hybrid for SlidingSphere {
 
     fn guard<T: Real>(&self, _: usize, _: usize, _: T, x: &[T], theta: &[T]) -> T {
         x[1] - theta[2] * x[2]
-    }
-
-    fn reset<T: Real>(&self, _: usize, _: usize, _: T, x: &[T], _: &[T], after: &mut [T]) {
-        after.copy_from_slice(x);
     }
 
     fn target(&self, _: usize, _: usize, _: f64, _: &[f64], _: &[f64]) -> usize {

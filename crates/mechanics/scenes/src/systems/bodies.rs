@@ -142,7 +142,7 @@ impl Sliding {
     }
 }
 
-/// Painlevé's rod: its lower tip slides ahead of the centre of mass. See `featherbench_contact::library::PainleveRod`.
+/// Painlevé's rod: its lower tip slides ahead of the centre of mass. See `featherbench_contact::systems::PainleveRod`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rod {
     /// Half of its length, m; the mass is 1 kg.

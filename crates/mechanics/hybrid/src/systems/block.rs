@@ -19,7 +19,7 @@ use featherbench_spatial::Real;
 /// Source: G. W. Housner, *The behavior of inverted pendulum structures during earthquakes* (1963).
 ///
 /// ```
-/// use featherbench_hybrid::library::RockingBlock;
+/// use featherbench_hybrid::systems::RockingBlock;
 /// assert!((RockingBlock::ratio(1.0_f64, 4.0) - 31.0 / 34.0).abs() < 1e-15);
 /// let alpha = 0.25_f64.atan();
 /// // sin is below its argument, so the true block is slower.
@@ -93,10 +93,6 @@ impl Hybrid for RockingBlock {
 
     fn modes(&self) -> usize {
         2
-    }
-
-    fn guards(&self, _: usize) -> usize {
-        1
     }
 
     fn direction(&self, mode: usize, _: usize) -> Direction {

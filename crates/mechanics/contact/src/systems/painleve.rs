@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 /// Source: P. Painlevé 1895; F. Génot and B. Brogliato, *New results on Painlevé paradoxes* (1999).
 ///
 /// ```
-/// use featherbench_contact::library::{Answers, PainleveRod};
+/// use featherbench_contact::systems::{Answers, PainleveRod};
 /// let rod = PainleveRod { friction: 1.5, ..PainleveRod::default() };
 /// assert_eq!(rod.answers(), Answers::None);
 /// assert!((rod.critical_friction() - 4.0 / 3.0).abs() < 1e-15);
@@ -117,16 +117,5 @@ impl PainleveRod {
         let upper = half + discriminant.sqrt();
         // The product of the roots is 4: so the smaller one does not cancel.
         (discriminant > 0.0).then(|| ((4.0 / upper).atan(), upper.atan()))
-    }
-
-    /// The map of existence and uniqueness over angles (rows) and rates (columns).
-    ///
-    /// ```
-    /// use featherbench_contact::library::{Answers, PainleveRod};
-    /// let rod = PainleveRod { friction: 1.5, ..PainleveRod::default() };
-    /// assert_eq!(rod.map(&[0.5, 1.1], &[0.0, 4.0]), [[Answers::Contact, Answers::Contact], [Answers::None, Answers::Two]]);
-    /// ```
-    pub fn map(&self, angles: &[f64], rates: &[f64]) -> Vec<Vec<Answers>> {
-        angles.iter().map(|&angle| rates.iter().map(|&rate| Self { angle, rate, ..*self }.answers()).collect()).collect()
     }
 }
