@@ -34,8 +34,6 @@ const HARMLESS: [(&str, &str, &str); 28] = [
     ("crates/mechanics/dynamics/src/ltdl/parallel.rs", "numbers.max(", "counts, which are integers"),
     ("crates/mechanics/dynamics/src/parallel.rs", "end[parent].max(", "bodies, which are integers"),
     ("crates/studies/comparison/src/derivatives/section/mod.rs", "entry.2.max(", "counts, which are integers"),
-    ("crates/mechanics/continua/examples/rod_on_humanoid.rs", "best_rod.min(", "durations"),
-    ("crates/mechanics/continua/examples/rod_on_humanoid.rs", "best_chain.min(", "durations"),
     ("crates/mechanics/uncertainty/src/quadrature.rs", "points.min(self.centre.len())", "a count"),
     ("crates/mechanics/hybrid/src/simulate.rs", "fold(f64::INFINITY, f64::min)", "places that a search found within a step"),
     ("crates/studies/comparison/src/reproductions/mod.rs", "fold(f64::max)", "the closure that calls it keeps what is no number"),

@@ -33,17 +33,6 @@ impl Mobility {
     ///
     /// # Errors
     /// [`Error`]: `q` does not fit or is not finite, or a weld is half a turn off.
-    ///
-    /// ```
-    /// use featherbench_constrained::{Mobility, systems::Ladder};
-    /// let ladder = Ladder::default();
-    /// let four_bar = ladder.mechanism()?;
-    /// let at = |angle: f64| Mobility::at(&four_bar.model, &four_bar.constraints, &ladder.spread(angle));
-    /// assert_eq!(at(0.5)?.freedom(), 1);
-    /// // All bars on one line.
-    /// assert_eq!(at(std::f64::consts::FRAC_PI_2)?.freedom(), 2);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn at(model: &Model<f64>, constraints: &Constraints, q: &[f64]) -> Result<Self, Error> {
         let dofs = model.topology.nv();
         let mut rows = Rows::new(constraints);

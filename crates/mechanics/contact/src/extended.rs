@@ -1,8 +1,7 @@
 //! Small dense linear algebra in double-double arithmetic: what the exact decisions of the enumeration rest on.
 
-use crate::problem::Mechanism;
 use featherbench_spatial::{DoubleDouble, Real};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// A dense matrix of double-doubles.
 pub(crate) type Matrix = DMatrix<DoubleDouble>;
@@ -87,11 +86,11 @@ pub(crate) fn solve(mut a: Matrix, mut y: Vec<DoubleDouble>, zero: f64) -> Solve
     Solved::Unique(x)
 }
 
-/// G = J M⁻¹ Jᵀ and J v_free of a mechanism; `None` where M has no Cholesky factor. `M = L Lᵀ`, `Y = L⁻¹ Jᵀ`, `G = Yᵀ Y`.
-pub(crate) fn delassus(mechanism: &Mechanism) -> Option<(Matrix, Vec<DoubleDouble>)> {
-    let (mut lower, jacobian) = (wide(&mechanism.mass), wide(&mechanism.jacobian));
+/// G = J M⁻¹ Jᵀ and J v_free; `None` where M has no Cholesky factor. `M = L Lᵀ`, `Y = L⁻¹ Jᵀ`, `G = Yᵀ Y`.
+pub(crate) fn delassus(mass: &DMatrix<f64>, jacobian: &DMatrix<f64>, free: &DVector<f64>) -> Option<(Matrix, Vec<DoubleDouble>)> {
+    let (mut lower, jacobian) = (wide(mass), wide(jacobian));
     let (rows, dofs) = jacobian.shape();
-    let free: Vec<DoubleDouble> = mechanism.free.iter().map(|v| DoubleDouble::from_f64(*v)).collect();
+    let free: Vec<DoubleDouble> = free.iter().map(|v| DoubleDouble::from_f64(*v)).collect();
     let free = times_plus(&jacobian, &free, &vec![DoubleDouble::zero(); rows]);
     for row in 0..dofs {
         for column in 0..=row {

@@ -41,5 +41,5 @@ pub use grounded::{Grounded, GroundedError, Stepped, Touch};
 pub use malformed::{Defect, Malformed};
 pub use problem::{Contact, Friction, Level, Mechanism, Problem, Scales};
 pub use residual::Residuals;
-pub use solution::{Certificate, Model, Outcome, Point, Solution};
+pub use solution::{Certificate, Outcome, Point, Solution};
 pub use solver::{Admm, BlockGaussSeidel, Convex, Enumeration, GaussSeidel, Lcp, Lemke, Newton, Penalty, Solver, Unsupported};

@@ -1,6 +1,5 @@
 //! What can be wrong with the numbers of a contact problem. Each error names its field.
 
-use crate::problem::{Contact, Friction, Level};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use thiserror::Error;
 
@@ -92,80 +91,8 @@ impl Malformed {
     }
 }
 
-fn finite(value: f64, field: impl FnOnce() -> String) -> Result<(), Malformed> {
+pub(crate) fn finite(value: f64, field: impl FnOnce() -> String) -> Result<(), Malformed> {
     if value.is_finite() { Ok(()) } else { Err(Malformed::new(field(), Defect::NotFinite { value })) }
-}
-
-/// Checks the contacts and gives the first row of each, and the number of rows.
-pub(crate) fn contacts(contacts: &[Contact], level: Level) -> Result<Vec<usize>, Malformed> {
-    if contacts.is_empty() {
-        return Err(Malformed::new("contacts", Defect::NoContact));
-    }
-    let mut offsets = vec![0];
-    for (index, contact) in contacts.iter().enumerate() {
-        friction(&contact.friction, &format!("contacts[{index}].friction"))?;
-        let field = || format!("contacts[{index}].restitution");
-        let value = contact.restitution;
-        finite(value, field)?;
-        if !(0.0..=1.0).contains(&value) {
-            return Err(Malformed::new(field(), Defect::Restitution { value }));
-        }
-        if value > 0.0 && level == Level::Force {
-            return Err(Malformed::new(field(), Defect::RestitutionOfForces { value }));
-        }
-        offsets.push(offsets[index] + contact.dimension());
-    }
-    Ok(offsets)
-}
-
-fn friction(friction: &Friction, field: &str) -> Result<(), Malformed> {
-    let coefficient = |value: f64, field: &str| {
-        finite(value, || field.to_owned())?;
-        if value < 0.0 { Err(Malformed::new(field, Defect::NegativeFriction { value })) } else { Ok(()) }
-    };
-    let tangents = |found: usize, field: &str| match found {
-        1 | 2 => Ok(()),
-        _ => Err(Malformed::new(field, Defect::Tangents { found })),
-    };
-    match friction {
-        Friction::None => Ok(()),
-        Friction::Coulomb { coefficients } => {
-            tangents(coefficients.len(), &format!("{field}.coulomb"))?;
-            coefficients.iter().enumerate().try_for_each(|(k, value)| coefficient(*value, &format!("{field}.coulomb[{k}]")))
-        }
-        Friction::Pyramid { vertices } => {
-            for (k, vertex) in vertices.iter().enumerate() {
-                for (l, value) in vertex.iter().enumerate() {
-                    finite(*value, || format!("{field}.pyramid[{k}][{l}]"))?;
-                }
-            }
-            if contains_zero(vertices) { Ok(()) } else { Err(Malformed::new(format!("{field}.pyramid"), Defect::Pyramid)) }
-        }
-        Friction::Sliding { coefficient: value, direction } => {
-            coefficient(*value, &format!("{field}.sliding.coefficient"))?;
-            let field = format!("{field}.sliding.direction");
-            tangents(direction.len(), &field)?;
-            for (k, value) in direction.iter().enumerate() {
-                finite(*value, || format!("{field}[{k}]"))?;
-            }
-            let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
-            // A unit vector with three decimals is meant as one; its error would be an error of μ.
-            if (length - 1.0).abs() > 1e-12 { Err(Malformed::new(field, Defect::NotUnit { length })) } else { Ok(()) }
-        }
-    }
-}
-
-/// Whether zero is in the hull: seen from it, no gap between neighbouring vertices is wider than a half turn.
-fn contains_zero(vertices: &[[f64; 2]]) -> bool {
-    let mut angles: Vec<f64> = vertices.iter().filter(|v| **v != [0.0, 0.0]).map(|v| v[1].atan2(v[0])).collect();
-    if vertices.len() < 3 || angles.len() < 2 {
-        return false;
-    }
-    angles.sort_by(f64::total_cmp);
-    let turn = std::f64::consts::TAU;
-    let next = angles.iter().skip(1).copied().chain([angles[0] + turn]);
-    // Rounding of the angles of two opposite vertices.
-    angles.iter().zip(next).all(|(angle, next)| next - angle <= 0.5 * turn + 1e-12)
 }
 
 pub(crate) fn vector(vector: &DVector<f64>, field: &str, expected: usize) -> Result<(), Malformed> {
@@ -188,10 +115,6 @@ pub(crate) fn matrix(matrix: &DMatrix<f64>, field: &str, (rows, columns): (usize
         }
     }
     Ok(())
-}
-
-pub(crate) fn square(found: &DMatrix<f64>, field: &str, size: usize) -> Result<(), Malformed> {
-    matrix(found, field, (size, size))
 }
 
 /// Mirror images may differ by the rounding of their computation, not by more.

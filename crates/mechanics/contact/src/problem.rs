@@ -1,7 +1,7 @@
 //! What a contact problem is: the Delassus matrix, the free velocity, and a contact law per contact.
 
 use crate::extended;
-use crate::malformed::{Defect, Malformed};
+use crate::malformed::{self, Defect, Malformed};
 use featherbench_spatial::DoubleDouble;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -97,6 +97,78 @@ impl Contact {
     }
 }
 
+/// Checks the contacts and gives the first row of each, and the number of rows.
+fn offsets(contacts: &[Contact], level: Level) -> Result<Vec<usize>, Malformed> {
+    if contacts.is_empty() {
+        return Err(Malformed::new("contacts", Defect::NoContact));
+    }
+    let mut offsets = vec![0];
+    for (index, contact) in contacts.iter().enumerate() {
+        friction(&contact.friction, &format!("contacts[{index}].friction"))?;
+        let field = || format!("contacts[{index}].restitution");
+        let value = contact.restitution;
+        malformed::finite(value, field)?;
+        if !(0.0..=1.0).contains(&value) {
+            return Err(Malformed::new(field(), Defect::Restitution { value }));
+        }
+        if value > 0.0 && level == Level::Force {
+            return Err(Malformed::new(field(), Defect::RestitutionOfForces { value }));
+        }
+        offsets.push(offsets[index] + contact.dimension());
+    }
+    Ok(offsets)
+}
+
+fn friction(friction: &Friction, field: &str) -> Result<(), Malformed> {
+    let coefficient = |value: f64, field: &str| {
+        malformed::finite(value, || field.to_owned())?;
+        if value < 0.0 { Err(Malformed::new(field, Defect::NegativeFriction { value })) } else { Ok(()) }
+    };
+    let tangents = |found: usize, field: &str| match found {
+        1 | 2 => Ok(()),
+        _ => Err(Malformed::new(field, Defect::Tangents { found })),
+    };
+    match friction {
+        Friction::None => Ok(()),
+        Friction::Coulomb { coefficients } => {
+            tangents(coefficients.len(), &format!("{field}.coulomb"))?;
+            coefficients.iter().enumerate().try_for_each(|(k, value)| coefficient(*value, &format!("{field}.coulomb[{k}]")))
+        }
+        Friction::Pyramid { vertices } => {
+            for (k, vertex) in vertices.iter().enumerate() {
+                for (l, value) in vertex.iter().enumerate() {
+                    malformed::finite(*value, || format!("{field}.pyramid[{k}][{l}]"))?;
+                }
+            }
+            if contains_zero(vertices) { Ok(()) } else { Err(Malformed::new(format!("{field}.pyramid"), Defect::Pyramid)) }
+        }
+        Friction::Sliding { coefficient: value, direction } => {
+            coefficient(*value, &format!("{field}.sliding.coefficient"))?;
+            let field = format!("{field}.sliding.direction");
+            tangents(direction.len(), &field)?;
+            for (k, value) in direction.iter().enumerate() {
+                malformed::finite(*value, || format!("{field}[{k}]"))?;
+            }
+            let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+            // A unit vector with three decimals is meant as one; its error would be an error of μ.
+            if (length - 1.0).abs() > 1e-12 { Err(Malformed::new(field, Defect::NotUnit { length })) } else { Ok(()) }
+        }
+    }
+}
+
+/// Whether zero is in the hull: seen from it, no gap between neighbouring vertices is wider than a half turn.
+fn contains_zero(vertices: &[[f64; 2]]) -> bool {
+    let mut angles: Vec<f64> = vertices.iter().filter(|v| **v != [0.0, 0.0]).map(|v| v[1].atan2(v[0])).collect();
+    if vertices.len() < 3 || angles.len() < 2 {
+        return false;
+    }
+    angles.sort_by(f64::total_cmp);
+    let turn = std::f64::consts::TAU;
+    let next = angles.iter().skip(1).copied().chain([angles[0] + turn]);
+    // Rounding of the angles of two opposite vertices.
+    angles.iter().zip(next).all(|(angle, next)| next - angle <= 0.5 * turn + 1e-12)
+}
+
 /// A mechanism in contact: mass matrix M (n×n), contact Jacobian J (rows×n), and generalized velocities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mechanism {
@@ -106,6 +178,13 @@ pub struct Mechanism {
     pub jacobian: DMatrix<f64>,
     /// The velocity (or acceleration) without contact impulses (or forces).
     pub free: DVector<f64>,
+}
+
+impl Mechanism {
+    /// G = J M⁻¹ Jᵀ and J v_free in double-double arithmetic; `None` where M has no Cholesky factor.
+    pub(crate) fn delassus(&self) -> Option<(extended::Matrix, Vec<DoubleDouble>)> {
+        extended::delassus(&self.mass, &self.jacobian, &self.free)
+    }
 }
 
 /// A contact problem: find impulses λ and velocities c = G λ + b that obey each contact's law.
@@ -151,12 +230,12 @@ impl Problem {
         delassus: DMatrix<f64>,
         free: DVector<f64>,
     ) -> Result<Self, Malformed> {
-        let offsets = crate::malformed::contacts(&contacts, level)?;
+        let offsets = offsets(&contacts, level)?;
         let rows = offsets[contacts.len()];
-        crate::malformed::square(&delassus, "delassus", rows)?;
-        crate::malformed::vector(&free, "free", rows)?;
-        crate::malformed::symmetric(&delassus, "delassus")?;
-        crate::malformed::semidefinite(&delassus, "delassus")?;
+        malformed::matrix(&delassus, "delassus", (rows, rows))?;
+        malformed::vector(&free, "free", rows)?;
+        malformed::symmetric(&delassus, "delassus")?;
+        malformed::semidefinite(&delassus, "delassus")?;
         let before = free.clone();
         Ok(Self { name: name.into(), level, contacts, offsets, delassus, free, before, mechanism: None })
     }
@@ -166,20 +245,19 @@ impl Problem {
     /// # Errors
     /// [`Malformed`] names the field.
     pub fn from_mechanism(name: impl Into<String>, level: Level, contacts: Vec<Contact>, mechanism: Mechanism) -> Result<Self, Malformed> {
-        let offsets = crate::malformed::contacts(&contacts, level)?;
+        let offsets = offsets(&contacts, level)?;
         let rows = offsets[contacts.len()];
         let dofs = mechanism.mass.nrows();
-        crate::malformed::square(&mechanism.mass, "mechanism.mass", dofs)?;
-        crate::malformed::matrix(&mechanism.jacobian, "mechanism.jacobian", (rows, dofs))?;
-        crate::malformed::vector(&mechanism.free, "mechanism.free", dofs)?;
-        crate::malformed::symmetric(&mechanism.mass, "mechanism.mass")?;
+        malformed::matrix(&mechanism.mass, "mechanism.mass", (dofs, dofs))?;
+        malformed::matrix(&mechanism.jacobian, "mechanism.jacobian", (rows, dofs))?;
+        malformed::vector(&mechanism.free, "mechanism.free", dofs)?;
+        malformed::symmetric(&mechanism.mass, "mechanism.mass")?;
         if Cholesky::new(mechanism.mass.clone()).is_none() {
             return Err(Malformed::new("mechanism.mass", Defect::NotPositiveDefinite));
         }
-        let (delassus, free) =
-            extended::delassus(&mechanism).ok_or_else(|| Malformed::new("mechanism.mass", Defect::NotPositiveDefinite))?;
+        let (delassus, free) = mechanism.delassus().ok_or_else(|| Malformed::new("mechanism.mass", Defect::NotPositiveDefinite))?;
         let (delassus, free) = (delassus.map(DoubleDouble::to_f64), DVector::from_iterator(rows, free.iter().map(|x| x.to_f64())));
-        crate::malformed::square(&delassus, "mechanism.jacobian", rows)?;
+        malformed::matrix(&delassus, "mechanism.jacobian", (rows, rows))?;
         let before = free.clone();
         Ok(Self { name: name.into(), level, contacts, offsets, delassus, free, before, mechanism: Some(mechanism) })
     }
@@ -189,7 +267,7 @@ impl Problem {
     /// # Errors
     /// [`Malformed`] for another size or a number that is not finite.
     pub fn with_before(self, before: DVector<f64>) -> Result<Self, Malformed> {
-        crate::malformed::vector(&before, "before", self.rows())?;
+        malformed::vector(&before, "before", self.rows())?;
         Ok(Self { before, ..self })
     }
 

@@ -6,14 +6,6 @@ use nalgebra::{DMatrix, SymmetricEigen};
 /// The factor by which the error of Gauss–Seidel falls each sweep while every row stays active: the spectral radius of (D + L)⁻¹ U.
 ///
 /// None if a diagonal entry is not positive.
-///
-/// ```
-/// use featherbench_contact::{rate, systems::Stack};
-/// // A body of 10 kg on one of 1 kg: R/(1 + R).
-/// let rate = rate::gauss_seidel(&Stack::two(10.0).problem()?).unwrap();
-/// assert!((rate - 10.0 / 11.0).abs() < 1e-14);
-/// # Ok::<(), featherbench_contact::Malformed>(())
-/// ```
 pub fn gauss_seidel(problem: &Problem) -> Option<f64> {
     let matrix = problem.delassus();
     let size = matrix.nrows();
@@ -40,12 +32,6 @@ pub fn admm(problem: &Problem, rho: f64) -> f64 {
 /// The factor from one step to the next, fitted to the last half of the steps that rounding does not yet disturb.
 ///
 /// The fit is a least-squares line through the logarithms. None if fewer than eight steps are usable.
-///
-/// ```
-/// use featherbench_contact::rate;
-/// let steps: Vec<f64> = (0..40).map(|k| 3.0 * 0.7_f64.powi(k)).collect();
-/// assert!((rate::fitted(&steps).unwrap() - 0.7).abs() < 1e-12);
-/// ```
 pub fn fitted(steps: &[f64]) -> Option<f64> {
     let first = steps.first().copied()?;
     // Steps below 1e-12 of the first are rounding.

@@ -26,25 +26,6 @@ impl Point {
     }
 }
 
-/// Which equations a solver solves.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Model {
-    /// Signorini's and Coulomb's laws as the problem states them.
-    Coulomb,
-    /// Coulomb's law with each round cone replaced by an inscribed pyramid.
-    Polyhedral {
-        /// The number of vertices of the pyramid.
-        directions: usize,
-    },
-    /// The convex relaxation K ∋ λ ⊥ c ∈ K*: no De Saxcé term, so a sliding contact opens with c_n = μ‖c_t‖.
-    Convex,
-    /// Compliant contacts: λ_n = k max(0, −c_n), and friction by the same k until it slides.
-    Compliant {
-        /// k, in units of the problem's impulse scale by its velocity scale.
-        stiffness: f64,
-    },
-}
-
 /// Why there is no solution.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Certificate {
@@ -68,17 +49,6 @@ pub enum Certificate {
 }
 
 /// What is known when a solver ends.
-///
-/// ```
-/// use featherbench_contact::systems::PainleveRod;
-/// use featherbench_contact::{Certificate, Lemke, Outcome, Solver};
-/// let rod = PainleveRod { friction: 1.5, ..PainleveRod::default() };
-/// match Lemke::default().solve(&rod.problem()?)?.outcome {
-///     Outcome::NoSolution(Certificate::Ray { descent, .. }) => assert!(descent < 0.0),
-///     other => panic!("{other:?}"),
-/// }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
     /// The equations of the solver's model hold to its tolerance. For enumeration: there is no other solution.
@@ -121,8 +91,6 @@ impl Outcome {
 pub struct Solution {
     /// What is known.
     pub outcome: Outcome,
-    /// Which equations the solver solves.
-    pub model: Model,
     /// Pivots, sweeps, Newton steps or modes: the solver's unit of work.
     pub iterations: usize,
     /// The size of each step of an iterative solver, for [`crate::rate::fitted`]. Empty for direct solvers.

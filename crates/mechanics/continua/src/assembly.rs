@@ -1,9 +1,8 @@
 //! Rods on robots: what a [`Continuum`] is built from.
 
-use crate::element::{along_x, links, ritz, sections, string};
-use crate::{Continuum, Defect, Element, Refused, Rod, Strain};
+use crate::element::{Host, Piece, Spring, Ties, along_x, links, ritz, sections, string};
+use crate::{Continuum, Defect, Element, Refused, Rod};
 use featherbench_model::{BodyDescription, Description, JointType, Loop, Placement};
-use nalgebra::DMatrix;
 
 /// A robot with rods: a description to which rods are attached, each at a body or at the world.
 ///
@@ -28,13 +27,6 @@ pub struct Assembly {
     pieces: Vec<(Piece, f64)>,
 }
 
-/// Where a rod begins: its x axis leaves the host along the placement's.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Host {
-    pub(crate) body: Option<usize>,
-    pub(crate) placement: Placement,
-}
-
 /// The end of a rod: a body of the assembly, and the end's place on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tip {
@@ -42,38 +34,6 @@ pub struct Tip {
     pub body: usize,
     /// The end of the rod in the body's frame, x along the rod.
     pub placement: Placement,
-}
-
-/// A spring at the joint of a body: torque or force per radian or metre.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Spring {
-    pub(crate) body: usize,
-    pub(crate) stiffness: f64,
-}
-
-/// Bodies whose joints follow common coordinates.
-#[derive(Clone, Debug)]
-pub(crate) struct Piece {
-    pub(crate) bodies: Vec<usize>,
-    pub(crate) ties: Ties,
-    pub(crate) stiffness: DMatrix<f64>,
-}
-
-/// How they follow.
-#[derive(Clone, Debug)]
-pub(crate) enum Ties {
-    /// One-dof joints: q = Φ s.
-    Linear { shapes: DMatrix<f64> },
-    /// Free joints along a screw motion, each at this distance from the one before.
-    Screw { steps: Vec<f64>, strains: Vec<Strain> },
-}
-
-/// What an element made.
-pub(crate) struct Made {
-    pub(crate) tip: usize,
-    pub(crate) tip_placement: Placement,
-    pub(crate) springs: Vec<Spring>,
-    pub(crate) pieces: Vec<Piece>,
 }
 
 impl Assembly {

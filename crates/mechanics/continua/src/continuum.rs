@@ -1,11 +1,11 @@
 //! A tree of rigid bodies with its elastic coordinates: the reduced tree, the fine tree, and what leads from one to the other.
 
-use crate::assembly::{Piece, Spring, Ties, Tip};
 use crate::block::Block;
+use crate::element::{Piece, Spring, Ties};
 use crate::{Defect, Refused};
-use featherbench_dynamics::{DimensionError, Kinematics};
+use featherbench_dynamics::DimensionError;
 use featherbench_model::{Axis, Description, JointKind, Model, Placement, Topology};
-use featherbench_spatial::{Angle, Lift, Transform};
+use featherbench_spatial::{Angle, Lift};
 use nalgebra::DMatrix;
 use std::collections::HashMap;
 
@@ -23,7 +23,7 @@ pub struct Continuum {
     springs: Vec<ReducedSpring>,
     plates: Vec<Plate>,
     /// Of each body of the assembly: the compiled body that it is part of, and its place there; `None` if it is part of the world.
-    places: Vec<Option<(usize, Placement)>>,
+    pub(crate) places: Vec<Option<(usize, Placement)>>,
     direct: bool,
 }
 
@@ -268,45 +268,5 @@ impl Continuum {
     pub(crate) fn compiled(&self, body: usize) -> Result<(usize, Placement), Refused> {
         let bodies = self.places.len();
         self.places.get(body).copied().flatten().ok_or_else(|| Refused::new("body", Defect::ClampedToNothing { body, bodies }))
-    }
-
-    /// The placement in the world of a rod's end.
-    ///
-    /// # Errors
-    /// [`Refused`]: there is no such body, or `s` does not fit.
-    pub fn place<T: Angle>(&self, s: &[T], tip: &Tip) -> Result<Transform<T>, Refused>
-    where
-        f64: Lift<T>,
-    {
-        let (body, on_body) = self.compiled(tip.body)?;
-        let fits = |error: DimensionError| Refused::new("s", Defect::Tree { reason: error.to_string() });
-        let kinematics = self.kinematics(s).map_err(fits)?;
-        let world = kinematics.body(body).map_or(Transform::identity(), |motion| motion.placement);
-        Ok(world.compose(&on_body.to_transform().lift()).compose(&tip.placement.to_transform().lift()))
-    }
-
-    /// The placements of all bodies of the assembly in the world, in their order; bodies that are part of the world have the identity.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when `s` does not fit.
-    pub fn shape(&self, s: &[f64]) -> Result<Vec<Transform<f64>>, DimensionError> {
-        let kinematics = self.kinematics(s)?;
-        let place = |place: &Option<(usize, Placement)>| {
-            let (body, on_body) = (*place)?;
-            Some(kinematics.body(body)?.placement.compose(&on_body.to_transform()))
-        };
-        Ok(self.places.iter().map(|x| place(x).unwrap_or(Transform::identity())).collect())
-    }
-
-    fn kinematics<T: Angle>(&self, s: &[T]) -> Result<Kinematics<T>, DimensionError>
-    where
-        f64: Lift<T>,
-    {
-        let zeros = vec![T::zero(); self.topology.nv()];
-        let mut solver = crate::Solver::new(self);
-        solver.embed(self, s, &zeros, &zeros)?;
-        let mut kinematics = Kinematics::new(&self.model.topology);
-        kinematics.run(&self.model, &solver.q, &solver.v, &solver.a)?;
-        Ok(kinematics)
     }
 }

@@ -10,6 +10,7 @@ pub(crate) mod string;
 
 use crate::{Basis, Defect, Refused, Strain};
 use featherbench_model::{BodyDescription, JointDescription, JointType, Placement};
+use nalgebra::DMatrix;
 
 /// A discretisation of a rod.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,6 +74,45 @@ pub enum Masses {
     Ends,
     /// Uniform rods.
     Uniform,
+}
+
+/// Where a rod begins: its x axis leaves the host along the placement's.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Host {
+    pub(crate) body: Option<usize>,
+    pub(crate) placement: Placement,
+}
+
+/// A spring at the joint of a body: torque or force per radian or metre.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spring {
+    pub(crate) body: usize,
+    pub(crate) stiffness: f64,
+}
+
+/// Bodies whose joints follow common coordinates.
+#[derive(Clone, Debug)]
+pub(crate) struct Piece {
+    pub(crate) bodies: Vec<usize>,
+    pub(crate) ties: Ties,
+    pub(crate) stiffness: DMatrix<f64>,
+}
+
+/// How they follow.
+#[derive(Clone, Debug)]
+pub(crate) enum Ties {
+    /// One-dof joints: q = Φ s.
+    Linear { shapes: DMatrix<f64> },
+    /// Free joints along a screw motion, each at this distance from the one before.
+    Screw { steps: Vec<f64>, strains: Vec<Strain> },
+}
+
+/// What an element made.
+pub(crate) struct Made {
+    pub(crate) tip: usize,
+    pub(crate) tip_placement: Placement,
+    pub(crate) springs: Vec<Spring>,
+    pub(crate) pieces: Vec<Piece>,
 }
 
 impl Element {

@@ -40,6 +40,7 @@ mod modes;
 mod passivity;
 pub mod quadrature;
 mod rigid;
+mod shape;
 mod solver;
 mod statics;
 pub mod systems;

@@ -33,18 +33,6 @@ impl Passivity {
 }
 
 /// Judges the matrices M, K and D; they are square and of one size. NaN in a matrix is NaN in the answer, which is then not passive.
-///
-/// ```
-/// use featherbench_continua::{Basis, Element, Rod, Strain, collocation, mass_matrix, passivity, systems};
-/// let rod = Rod::textbook(1.0, 1.0, 1.0)?;
-/// let element = Element::Ritz { basis: Basis::Monomials(3), strains: vec![Strain::BendZ] };
-/// let (beam, _) = systems::cantilever(&rod, &element)?;
-/// let mass = mass_matrix(&beam, &beam.rest())?;
-/// assert!(passivity(&mass, &beam.stiffness_matrix(), &beam.damping_matrix()).passive());
-/// let (mass, stiffness) = collocation(&rod, Basis::Monomials(3))?;
-/// assert!(!passivity(&mass, &stiffness, &(&stiffness * 0.0)).passive());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn passivity(mass: &DMatrix<f64>, stiffness: &DMatrix<f64>, damping: &DMatrix<f64>) -> Passivity {
     let matrices = [mass, stiffness, damping];
     let asymmetry = matrices.map(|matrix| {

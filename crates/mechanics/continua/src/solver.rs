@@ -260,17 +260,13 @@ where
         DimensionError::expect("accelerations", nv, second.len())?;
         let still = std::mem::take(&mut self.still);
         let mut force = std::mem::take(&mut self.force);
-        let done = if continuum.is_direct() {
-            force.fill(T::zero());
-            self.forward_direct(continuum, &Moving { q: s, v: rate, a: &still[..] }, tau, loads, (&mut force, second))
-        } else {
-            self.forward_embedded(continuum, &Moving { q: s, v: rate, a: &still[..] }, tau, loads, (&mut force, second))
-        };
+        let done = self.accelerate(continuum, &Moving { q: s, v: rate, a: &still[..] }, tau, loads, (&mut force, second));
         (self.still, self.force) = (still, force);
         done
     }
 
-    fn forward_direct(
+    /// The accelerations, and the forces of the state in a workspace.
+    fn accelerate(
         &mut self,
         continuum: &Continuum,
         state: &Moving<&[T]>,
@@ -278,29 +274,20 @@ where
         loads: &[Load],
         (force, second): (&mut [T], &mut [T]),
     ) -> Result<(), SolveError> {
+        if !continuum.is_direct() {
+            let mass = self.mass(continuum, state.q)?;
+            self.mass.run(&mass)?;
+            self.inverse(continuum, state.q, state.v, state.a, loads, force)?;
+            second.iter_mut().zip(tau).zip(force).for_each(|((second, tau), force)| *second = *tau - *force);
+            return Ok(self.mass.solve(second)?);
+        }
         self.embed(continuum, state.q, state.v, state.a)?;
         self.load(continuum, loads)?;
+        force.fill(T::zero());
         continuum.add_resistance(state.q, state.v, force);
         force.iter_mut().zip(tau).for_each(|(force, tau)| *force = *tau - *force);
         let wrenches = if loads.is_empty() { None } else { Some(&self.wrenches[..]) };
         Ok(self.aba.run(continuum.model(), state.q, state.v, force, wrenches, second)?)
-    }
-
-    fn forward_embedded(
-        &mut self,
-        continuum: &Continuum,
-        state: &Moving<&[T]>,
-        tau: &[T],
-        loads: &[Load],
-        (force, second): (&mut [T], &mut [T]),
-    ) -> Result<(), SolveError> {
-        let mass = self.mass(continuum, state.q)?;
-        self.mass.run(&mass)?;
-        self.inverse(continuum, state.q, state.v, state.a, loads, force)?;
-        for ((second, tau), force) in second.iter_mut().zip(tau).zip(force.iter()) {
-            *second = *tau - *force;
-        }
-        Ok(self.mass.solve(second)?)
     }
 }
 

@@ -1,13 +1,13 @@
-//! Orders and prefactors of the discretisations.
+//! Orders and prefactors of the discretisations. Small deflections and strings are cases of the study `continuum`.
 
 use crate::beams::{links, ritz, rod, sections, tip_under};
 use crate::wide::{smallest_eigenvalue, wide};
 use featherbench_continua::known::{
-    bessel_zero, cantilever_root, elastica, exact_modes_tip_ratio, hermite_frequency_prefactor, laguerre_zeros, links_frequency_prefactor,
-    links_tip_prefactor, lumped_axial, sections_frequency_prefactor, sections_tip_prefactor, string_frequency_prefactor, tip_ratio,
+    cantilever_root, elastica, hermite_frequency_prefactor, links_frequency_prefactor, links_tip_prefactor, lumped_axial,
+    sections_frequency_prefactor, sections_tip_prefactor, tip_ratio,
 };
 use featherbench_continua::{
-    Basis, Element, Hinges, Load, Masses, Material, Rod, Section, Settings, Status, Strain, equilibrium, fit, generalized, modes, systems,
+    Basis, Element, Hinges, Load, Material, Rod, Section, Settings, Status, Strain, equilibrium, fit, generalized, modes, systems,
 };
 use nalgebra::DMatrix;
 use std::cell::RefCell;
@@ -25,29 +25,6 @@ fn assert_law(name: &str, refinements: &[usize], error: impl Fn(usize) -> f64, o
     println!("{name}: {law:?} for {order} and {prefactor}");
     assert!(errors.len() >= 4 && (law.order - order).abs() < 0.05, "{name}: {law:?}");
     assert!((law.prefactor / prefactor - 1.0).abs() < 0.03, "{name}: {law:?} for {prefactor}");
-}
-
-#[test]
-fn small_deflections_are_those_of_the_quadrature_at_every_n() {
-    // Of order α² beside 1, and the rounding of δ.
-    let (alpha, tolerance) = (1e-6, 1e-11);
-    for n in [1, 2, 3, 7, 16] {
-        for hinges in [Hinges::Start, Hinges::StartStiffWall, Hinges::Middle] {
-            let ratio = tip_under(&links(n, hinges), alpha)[1] * 3.0 / alpha;
-            assert!((ratio / tip_ratio(hinges, n) - 1.0).abs() < tolerance, "{hinges:?} {n}: {ratio}");
-        }
-        let ratio = tip_under(&sections(n), alpha)[1] * 3.0 / alpha;
-        assert!((ratio / tip_ratio(Hinges::Middle, n) - 1.0).abs() < tolerance, "sections {n}: {ratio}");
-    }
-    for r in 1..=4 {
-        let ratio = tip_under(&ritz(Basis::Modes(r)), alpha)[1] * 3.0 / alpha;
-        assert!((ratio / exact_modes_tip_ratio(r) - 1.0).abs() < tolerance);
-    }
-    // One monomial of degree 2 gives 3/4; with s³ the deflection is in the space. So it is with Hermite splines.
-    assert!((tip_under(&ritz(Basis::Monomials(1)), alpha)[1] * 4.0 / alpha - 1.0).abs() < tolerance);
-    for basis in [Basis::Monomials(2), Basis::Monomials(4), Basis::Hermite(1), Basis::Hermite(3)] {
-        assert!((tip_under(&ritz(basis), alpha)[1] * 3.0 / alpha - 1.0).abs() < tolerance, "{basis:?}");
-    }
 }
 
 /// The matrices of a chain of rigid links in absolute angles, written down from kinematics: the second route of the frequencies. Heights of
@@ -118,19 +95,8 @@ fn frequency_errors_have_order_and_prefactor() {
 }
 
 #[test]
-fn monomials_have_the_percentages_of_ritz() {
-    let squares = |r: usize| frequencies(&ritz(Basis::Monomials(r))).into_iter().map(|w| w * w).collect::<Vec<_>>();
-    // r = 1: ω² = 4/(1/5) = 20. r = 2: det(K − λM) = 0 with K = [[4, 6], [6, 12]], M = [[1/5, 1/6], [1/6, 1/7]].
-    assert!((squares(1)[0] / 20.0 - 1.0).abs() < 1e-14);
-    let (a, b, c) = (1.0_f64 / 35.0 - 1.0 / 36.0, -(4.0 / 7.0 + 12.0 / 5.0 - 2.0), 12.0);
-    let root = (b * b - 4.0 * a * c).sqrt();
-    for (square, known) in squares(2).iter().zip([(-b - root) / (2.0 * a), (-b + root) / (2.0 * a)]) {
-        assert!((square / known - 1.0).abs() < 1e-11, "{square} {known}");
-    }
-    for (w, printed) in frequencies(&ritz(Basis::Monomials(2))).iter().zip([3.53273154, 34.80689311]) {
-        assert!((w / printed - 1.0).abs() < 1e-8);
-    }
-    // Higher r: M_ij = 1/(i + j + 5), K_ij = (i+2)(i+1)(j+2)(j+1)/(i + j + 1), by inverse iteration in double-double.
+fn monomials_have_the_errors_of_ritz() {
+    // M_ij = 1/(i + j + 5), K_ij = (i+2)(i+1)(j+2)(j+1)/(i + j + 1), by inverse iteration in double-double.
     for (r, printed) in [(3, 3.0170384e-4), (4, 1.5392236e-6), (5, 3.8476854e-8), (6, 8.1333e-11)] {
         let entry = |f: &dyn Fn(f64, f64) -> [f64; 2]| {
             let row = |i: usize| (0..r).map(|j| f(i as f64, j as f64)).map(|[a, b]| wide(a) / wide(b)).collect::<Vec<_>>();
@@ -155,30 +121,6 @@ fn the_elastica_is_met_with_the_order_of_each_element() {
     assert_law("sections", &[4, 8, 16, 32], |n| error(sections(n)), 2.0, 4.0, sections_tip_prefactor(1.0));
     assert_law("start", &[8, 16, 32, 64], |n| error(links(n, Hinges::Start)), 1.0, 2.0, theory(Hinges::Start));
     assert!((error(links(4, Hinges::Middle)) + 1.71e-2).abs() < 1e-4);
-}
-
-#[test]
-fn a_string_of_masses_has_the_laguerre_zeros() {
-    for n in [1, 2, 3, 8, 20] {
-        let length = n as f64 * 0.3;
-        let (string, _) = systems::hanging_string(n, Masses::Ends, length, 2.0, 9.81).unwrap();
-        let squares = modes(&string, &string.rest(), &[]).unwrap().squares;
-        for (square, zero) in squares.iter().zip(laguerre_zeros(n)) {
-            let known = 9.81 / (length / n as f64) * zero;
-            assert!((square / known - 1.0).abs() < 1e-13, "{n}: {square} {known}");
-        }
-    }
-}
-
-#[test]
-fn strings_come_to_the_bessel_zeros() {
-    let error = |n: usize, masses: Masses, k: usize| {
-        let (string, _) = systems::hanging_string(n, masses, 1.0, 1.0, 1.0).unwrap();
-        modes(&string, &string.rest(), &[]).unwrap().squares[k] / (bessel_zero(k) / 2.0).powi(2) - 1.0
-    };
-    assert_law("masses", &[16, 32, 64, 96], |n| error(n, Masses::Ends, 0), 1.0, 2.0, -0.5);
-    assert_law("uniform", &[8, 16, 32, 64], |n| error(n, Masses::Uniform, 0), 2.0, 4.0, string_frequency_prefactor(0));
-    assert_law("uniform", &[16, 32, 64, 96], |n| error(n, Masses::Uniform, 1), 2.0, 4.0, string_frequency_prefactor(1));
 }
 
 #[test]

@@ -1,14 +1,13 @@
 //! Dynamics of every element: M, its energy, conservation, damping, stiff steps.
 
-use crate::beams::{links, rod};
+use crate::beams::links;
 use featherbench_continua::{
-    Assembly, Basis, Continuum, Element, Hinges, Load, Masses, Material, Motion, Rod, Section, Solver, Strain, collocation, energies,
-    mass_matrix, momentum, passivity, systems,
+    Assembly, Basis, Continuum, Element, Hinges, Load, Masses, Material, Motion, Rod, Section, Solver, Strain, energies, mass_matrix,
+    momentum, passivity, systems,
 };
 use featherbench_dynamics::integrate::{DormandPrince, ImplicitMidpoint, Tolerance};
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Placement};
-use featherbench_spatial::DoubleDouble;
-use featherbench_spatial::larger;
+use featherbench_spatial::{DoubleDouble, larger};
 use nalgebra::{DMatrix, DVector};
 
 /// A thick soft rod whose strains all matter, with this damping time.
@@ -156,20 +155,7 @@ fn damping_takes_energy_at_every_step_and_as_much_as_it_says() {
 }
 
 #[test]
-fn elements_are_passive_and_collocation_is_not() {
-    for element in elements() {
-        let continuum = on_hub(&element, 0.02);
-        let (s, _) = state(&continuum, 0.3);
-        let found = passivity(&mass_matrix(&continuum, &s).unwrap(), &continuum.stiffness_matrix(), &continuum.damping_matrix());
-        assert!(found.passive(), "{element:?}: {found:?}");
-    }
-    for terms in 2..=5 {
-        let (mass, stiffness) = collocation(&rod(), Basis::Monomials(terms)).unwrap();
-        let found = passivity(&mass, &stiffness, &DMatrix::zeros(terms, terms));
-        // Already the mass matrix gives energy below zero; K of s² and s³ is zero, since both have no fourth derivative.
-        assert!(!found.passive() && found.smallest[0] < -1e-3 && found.asymmetry[0] > 0.1, "{terms}: {found:?}");
-    }
-    // NaN is never passive.
+fn what_is_no_number_is_not_passive() {
     let (one, nan) = (DMatrix::identity(1, 1), DMatrix::from_element(1, 1, f64::NAN));
     assert!(passivity(&one, &one, &one).passive() && !passivity(&one, &nan, &one).passive() && !passivity(&nan, &one, &one).passive());
 }

@@ -1,7 +1,6 @@
 //! Linear algebra in double-double, for second routes.
 
-use featherbench_spatial::DoubleDouble;
-use featherbench_spatial::larger;
+use featherbench_spatial::{DoubleDouble, larger};
 
 pub type Wide = DoubleDouble;
 

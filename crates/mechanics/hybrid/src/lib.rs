@@ -29,10 +29,9 @@ mod zeno;
 
 pub use adjoint::{Gradient, adjoint};
 pub use error::HybridError;
-pub use run::{Cap, Event, Record, Run, Settled, Simultaneous, Start, Status, Step};
+pub use run::{Cap, Event, Limit, Record, Run, Settled, Simultaneous, Start, Status, Step, Tail};
 pub use saltation::Saltation;
 pub use sensitivity::{Sensitivity, sensitivity};
 pub use settings::{Settings, Zeno};
 pub use simulate::simulate;
 pub use system::{Direction, Hybrid};
-pub use zeno::{Limit, Tail};

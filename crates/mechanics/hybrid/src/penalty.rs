@@ -105,13 +105,6 @@ pub struct Law {
 impl Drop {
     /// The law of this drop.
     ///
-    /// ```
-    /// use featherbench_hybrid::penalty::Drop;
-    /// let law = Drop { mass: 1.0, gravity: 9.81, height: 1.0, damping: 0.0, time: 0.7 }.law()?;
-    /// assert!(law.restitution == 1.0 && (law.prefactor[1] - 9.81 * std::f64::consts::PI).abs() < 1e-14);
-    /// # Ok::<(), featherbench_hybrid::HybridError>(())
-    /// ```
-    ///
     /// # Errors
     /// [`HybridError::Parameter`] unless m, g, h are positive, 0 ≤ ζ < 1, and T lies between the first and the second impact.
     pub fn law(&self) -> Result<Law, HybridError> {

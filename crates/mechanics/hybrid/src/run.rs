@@ -2,7 +2,6 @@
 
 use crate::error::HybridError;
 use crate::system::{Hybrid, expect_mode};
-use crate::zeno::Tail;
 
 /// Where a run begins.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,6 +97,32 @@ pub enum Cap {
     Events,
     /// Events at one instant.
     Chain,
+}
+
+/// A limit that was extrapolated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit<T> {
+    /// The limit.
+    pub value: T,
+    /// Its estimated error.
+    pub error: f64,
+}
+
+/// The tail of a run with infinitely many events.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tail<T> {
+    /// The mode before the events.
+    pub mode: usize,
+    /// Their guard.
+    pub guard: usize,
+    /// t∞.
+    pub time: Limit<T>,
+    /// The ratio of the last two intervals.
+    pub ratio: f64,
+    /// x∞, of the states after the resets; `None` of a state without a geometric tail.
+    pub state: Vec<Option<Limit<T>>>,
+    /// How many of the events were computed.
+    pub computed: usize,
 }
 
 /// How a run ended. Only [`Status::Finished`] reached the time that was asked for.

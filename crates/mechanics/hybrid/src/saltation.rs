@@ -33,13 +33,6 @@ pub struct Saltation<T> {
 impl<T: Real> Saltation<T> {
     /// The saltation of a guard that is met with the state `before`; `target` is the mode after.
     ///
-    /// ```
-    /// use featherbench_hybrid::{Saltation, systems::BouncingBall};
-    /// let ball = Saltation::new(&BouncingBall, &[9.81, 0.8], 0, 0, 0, 0.0, &[0.0, -4.0, 0.0])?.matrix();
-    /// assert!((ball[(0, 0)] + 0.8).abs() < 1e-15 && (ball[(1, 0)] - 1.8 * 9.81 / 4.0).abs() < 1e-14);
-    /// # Ok::<(), featherbench_hybrid::HybridError>(())
-    /// ```
-    ///
     /// # Errors
     /// [`HybridError::Tangent`] where ġ = 0: Ξ grows as 1/ġ, and nothing clips it. Others if the arguments do not fit the system.
     pub fn new<S: Hybrid>(

@@ -87,38 +87,34 @@ impl Settings {
 
     /// An error that names the first setting out of its range.
     pub(crate) fn check(&self) -> Result<(), HybridError> {
-        let positive = |field, value: f64| match value > 0.0 && value < f64::INFINITY {
-            true => Ok(()),
-            false => Err(HybridError::Setting { field, value, range: "positive and finite" }),
-        };
-        if !(2..=12).contains(&self.columns) {
-            return Err(HybridError::Setting { field: "columns", value: self.columns as f64, range: "from 2 to 12" });
+        let (positive, above) = (|value: f64| value > 0.0 && value < f64::INFINITY, "positive and finite");
+        let columns = self.columns as f64;
+        let mut checks = vec![
+            ("columns", columns, (2.0..=12.0).contains(&columns), "from 2 to 12"),
+            ("absolute", self.absolute, positive(self.absolute), above),
+            ("relative", self.relative, (0.0..1.0).contains(&self.relative), "at least 0 and below 1"),
+            ("time", self.time, positive(self.time), above),
+            ("grazing_value", self.grazing_value, positive(self.grazing_value), above),
+            ("grazing_rate", self.grazing_rate, positive(self.grazing_rate), above),
+            ("order", self.order, positive(self.order), above),
+            (
+                "dense",
+                self.dense,
+                self.dense > 0.0 && self.dense <= 0.1 * self.grazing_value,
+                "positive, and at most a tenth of grazing_value",
+            ),
+            ("longest_step", self.longest_step, self.longest_step > 0.0, "positive; infinite for none"),
+        ];
+        if let Some(Zeno { intervals, spread, ratio }) = self.zeno {
+            checks.extend([
+                ("zeno.intervals", intervals as f64, intervals >= 4, "at least 4"),
+                ("zeno.spread", spread, positive(spread), above),
+                ("zeno.ratio", ratio, ratio > 0.0 && ratio < 1.0, "between 0 and 1"),
+            ]);
         }
-        positive("absolute", self.absolute)?;
-        if !(self.relative >= 0.0 && self.relative < 1.0) {
-            return Err(HybridError::Setting { field: "relative", value: self.relative, range: "at least 0 and below 1" });
+        match checks.into_iter().find(|(_, _, fits, _)| !fits) {
+            Some((field, value, _, range)) => Err(HybridError::Setting { field, value, range }),
+            None => Ok(()),
         }
-        positive("time", self.time)?;
-        positive("grazing_value", self.grazing_value)?;
-        positive("grazing_rate", self.grazing_rate)?;
-        positive("order", self.order)?;
-        if !(self.dense > 0.0 && self.dense <= 0.1 * self.grazing_value) {
-            return Err(HybridError::Setting {
-                field: "dense",
-                value: self.dense,
-                range: "positive, and at most a tenth of grazing_value",
-            });
-        }
-        let range = "positive; infinite for none";
-        if self.longest_step.is_nan() || self.longest_step <= 0.0 {
-            return Err(HybridError::Setting { field: "longest_step", value: self.longest_step, range });
-        }
-        let Some(zeno) = self.zeno else { return Ok(()) };
-        if zeno.intervals < 4 {
-            return Err(HybridError::Setting { field: "zeno.intervals", value: zeno.intervals as f64, range: "at least 4" });
-        }
-        positive("zeno.spread", zeno.spread)?;
-        let inside = zeno.ratio > 0.0 && zeno.ratio < 1.0;
-        if inside { Ok(()) } else { Err(HybridError::Setting { field: "zeno.ratio", value: zeno.ratio, range: "between 0 and 1" }) }
     }
 }

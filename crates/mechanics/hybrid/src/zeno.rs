@@ -13,36 +13,10 @@
 //!
 //! Source: A. C. Aitken, *On Bernoulli's numerical solution of algebraic equations* (1926).
 
-use crate::run::Event;
+use crate::run::{Event, Limit, Tail};
 use crate::settings::Zeno;
 use crate::system::rounding;
 use featherbench_spatial::{Real, largest};
-
-/// A limit that was extrapolated.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limit<T> {
-    /// The limit.
-    pub value: T,
-    /// Its estimated error.
-    pub error: f64,
-}
-
-/// The tail of a run with infinitely many events.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Tail<T> {
-    /// The mode before the events.
-    pub mode: usize,
-    /// Their guard.
-    pub guard: usize,
-    /// t∞.
-    pub time: Limit<T>,
-    /// The ratio of the last two intervals.
-    pub ratio: f64,
-    /// x∞, of the states after the resets; `None` of a state without a geometric tail.
-    pub state: Vec<Option<Limit<T>>>,
-    /// How many of the events were computed.
-    pub computed: usize,
-}
 
 /// The tail of the kind of the last event, if it is recognised.
 pub(crate) fn recognise<T: Real>(settings: &Zeno, events: &[Event<T>]) -> Option<Tail<T>> {

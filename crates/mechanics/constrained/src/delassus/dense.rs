@@ -12,16 +12,6 @@ use nalgebra::{DMatrix, Scalar};
 ///
 /// # Errors
 /// [`Error`]: J is no whole number of rows, or M is not positive definite.
-///
-/// ```
-/// use featherbench_dynamics::TreeSparse;
-/// let mut mass = TreeSparse::of_parents(&[None, Some(0)])?;
-/// mass.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
-/// // M⁻¹ = [[8, −4], [−4, 5]] / 24
-/// let g = featherbench_constrained::delassus::dense(&[1.0, 1.0], &mass)?;
-/// assert!((g[(0, 0)] - 5.0_f64 / 24.0).abs() < 1e-16);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn dense<T: Real + Scalar>(jacobian: &[T], mass: &TreeSparse<T>) -> Result<DMatrix<T>, Error> {
     let n = mass.size();
     let rows = jacobian.len().checked_div(n).unwrap_or(0);

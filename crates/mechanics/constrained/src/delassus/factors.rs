@@ -13,16 +13,6 @@ use nalgebra::{DMatrix, Scalar};
 ///
 /// # Errors
 /// [`Error::Dimension`] when J is no whole number of rows.
-///
-/// ```
-/// use featherbench_dynamics::TreeSparse;
-/// let mut mass = TreeSparse::of_parents(&[None])?;
-/// mass.values_mut().copy_from_slice(&[4.0]);
-/// // Two rows on one dof of 4 kg m².
-/// let y = featherbench_constrained::delassus::half_solved(&[1.0, 6.0], &mass.into_ltdl()?)?;
-/// assert_eq!((y[(0, 0)], y[(0, 1)]), (0.5, 3.0));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn half_solved<T: Real + Scalar>(jacobian: &[T], factors: &Ltdl<T>) -> Result<DMatrix<T>, Error> {
     let n = factors.factors().size();
     let rows = jacobian.len().checked_div(n).unwrap_or(0);
@@ -39,15 +29,6 @@ pub fn half_solved<T: Real + Scalar>(jacobian: &[T], factors: &Ltdl<T>) -> Resul
 ///
 /// # Errors
 /// [`Error::Dimension`] when J is no whole number of rows.
-///
-/// ```
-/// use featherbench_dynamics::TreeSparse;
-/// let mut mass = TreeSparse::of_parents(&[None, Some(0)])?;
-/// mass.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
-/// let g = featherbench_constrained::delassus::by_factors(&[1.0, 1.0], &mass.into_ltdl()?)?;
-/// assert!((g[(0, 0)] - 5.0_f64 / 24.0).abs() < 1e-16);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn by_factors<T: Real + Scalar>(jacobian: &[T], factors: &Ltdl<T>) -> Result<DMatrix<T>, Error> {
     Ok(gram(&half_solved(jacobian, factors)?))
 }

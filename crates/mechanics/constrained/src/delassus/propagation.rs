@@ -175,20 +175,6 @@ impl<T: Real> Articulated<T> {
 ///
 /// # Errors
 /// [`Error`]: an argument does not fit, or a dof meets no inertia.
-///
-/// ```
-/// use featherbench_constrained::{Rows, delassus::{by_factors, by_propagation}, systems::Ladder};
-/// use featherbench_dynamics::mass_matrix;
-/// let ladder = Ladder::default();
-/// let four_bar = ladder.mechanism()?;
-/// let q = ladder.spread(0.5);
-/// let mut rows = Rows::new(&four_bar.constraints);
-/// rows.run(&four_bar.model, &four_bar.constraints, &q, &[0.0; 3])?;
-/// let g = by_propagation(&four_bar.model, &q, rows.rows())?;
-/// let other = by_factors(rows.jacobian(), &mass_matrix(&four_bar.model, &q)?.into_ltdl()?)?;
-/// assert!((g - other).amax() < 1e-13);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn by_propagation<T: Real + Scalar, P: Real + Lift<T>>(model: &Model<P>, q: &[T], rows: &[Row<T>]) -> Result<DMatrix<T>, Error> {
     let mut articulated = Articulated::new(&model.topology);
     articulated.run(model, q)?;

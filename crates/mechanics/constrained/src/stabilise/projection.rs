@@ -88,17 +88,6 @@ impl Projection {
     /// # Errors
     /// [`Error::NotConverged`] when the residual is above the tolerance after all iterations: `q` is then as it was.
     /// The others as [`Rows::run`](crate::Rows::run).
-    ///
-    /// ```
-    /// use featherbench_constrained::{stabilise::Projection, systems::Ladder};
-    /// let ladder = Ladder::default();
-    /// let four_bar = ladder.mechanism()?;
-    /// let mut q = ladder.spread(0.5);
-    /// q[1] += 0.01;
-    /// let found = Projection::default().configuration(&four_bar.model, &four_bar.constraints, &mut q)?;
-    /// assert!(found.residual <= 1e-12 && found.rank == 2);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn configuration(&self, model: &Model<f64>, constraints: &Constraints, q: &mut [f64]) -> Result<Projected, Error> {
         check_tolerance("cut of the projection", self.cut)?;
         check_tolerance("tolerance of the projection", self.tolerance)?;

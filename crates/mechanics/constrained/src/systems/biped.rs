@@ -57,15 +57,6 @@ impl Biped {
     ///
     /// # Errors
     /// [`BadMechanism`] when a mass or length makes no sense.
-    ///
-    /// ```
-    /// use featherbench_constrained::{Mobility, systems::Biped};
-    /// let biped = Biped::default().mechanism()?;
-    /// let q = featherbench_model::neutral::<f64>(&biped.model.topology);
-    /// let mobility = Mobility::at(&biped.model, &biped.constraints, &q)?;
-    /// assert_eq!((biped.graph.loops(), biped.graph.gruebler(6), mobility.freedom()), (6, 6, 12));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn mechanism(&self) -> Result<Mechanism, BadMechanism> {
         Mechanism::of(&self.description())
     }

@@ -32,14 +32,6 @@ impl Bricard {
     ///
     /// # Errors
     /// [`BadMechanism`] when a mass or length makes no sense.
-    ///
-    /// ```
-    /// use featherbench_constrained::{Mobility, systems::Bricard};
-    /// let bricard = Bricard::default().mechanism()?;
-    /// assert_eq!(bricard.graph.gruebler(6), 0);
-    /// assert_eq!(Mobility::at(&bricard.model, &bricard.constraints, &[0.0; 5])?.freedom(), 1);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn mechanism(&self) -> Result<Mechanism, BadMechanism> {
         Mechanism::of(&self.description())
     }

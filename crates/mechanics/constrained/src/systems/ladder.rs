@@ -45,13 +45,6 @@ impl Ladder {
     ///
     /// # Errors
     /// [`BadMechanism`] when a mass or length makes no sense.
-    ///
-    /// ```
-    /// use featherbench_constrained::systems::Ladder;
-    /// let mechanism = Ladder::default().mechanism()?;
-    /// assert_eq!((mechanism.graph.loops(), mechanism.graph.gruebler(3)), (1, 1));
-    /// # Ok::<(), featherbench_constrained::BadMechanism>(())
-    /// ```
     pub fn mechanism(&self) -> Result<Mechanism, BadMechanism> {
         Mechanism::of(&self.description())
     }

@@ -74,15 +74,6 @@ impl Squeezer {
     ///
     /// # Errors
     /// [`BadMechanism`] when a mass or length makes no sense.
-    ///
-    /// ```
-    /// use featherbench_constrained::{Mobility, systems::Squeezer};
-    /// let squeezer = Squeezer::default().mechanism()?;
-    /// let start = Mobility::at(&squeezer.model, &squeezer.constraints, &Squeezer::start())?;
-    /// assert!(start.residual < 1e-16);
-    /// assert_eq!((squeezer.constraints.rows(), start.rank, start.freedom()), (15, 6, 1));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn mechanism(&self) -> Result<Mechanism, BadMechanism> {
         Mechanism::of(&self.description())
     }

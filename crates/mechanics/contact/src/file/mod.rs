@@ -187,13 +187,6 @@ pub fn write(problem: &Problem, path: impl AsRef<Path>) -> Result<(), FileError>
 }
 
 /// The text of a problem's file. Reading it gives the same problem.
-///
-/// ```
-/// use featherbench_contact::{file, systems::Kane};
-/// let problem = Kane::default().problem()?;
-/// assert_eq!(file::parse(&file::to_text(&problem), "kane.json")?, problem);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn to_text(problem: &Problem) -> String {
     // Numbers, names and lists of them always have a JSON text.
     let json = |value: serde_json::Value| value.to_string();

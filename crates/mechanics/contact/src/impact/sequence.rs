@@ -73,15 +73,6 @@ pub fn sequence(problem: &Problem, law: Law, order: &[usize], cap: usize) -> Res
 
 /// The impacts in every order of the contacts, and how much their ends differ.
 ///
-/// ```
-/// use featherbench_contact::impact::{Law, orders};
-/// use featherbench_contact::systems::Cradle;
-/// // A heavy ball between two light ones that hit it at once: which impact is first decides the end.
-/// let problem = Cradle { masses: vec![1.0, 3.0, 1.0], velocities: vec![1.0, 0.0, -1.0], restitution: 0.5 }.problem()?;
-/// assert!(orders(&problem, Law::Newton, 100)?.disagreement > 0.1);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
 /// # Errors
 /// [`NoImpact`] of a single impact, or if there are more than six contacts.
 pub fn orders(problem: &Problem, law: Law, cap: usize) -> Result<Orders, NoImpact> {

@@ -13,19 +13,10 @@ use super::standard::Standard;
 use super::{Solver, Unsupported, positive};
 use crate::cones;
 use crate::problem::Problem;
-use crate::solution::{Model, Outcome, Solution};
+use crate::solution::{Outcome, Solution};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// ADMM. One factorization, then O(rows²) per iteration.
-///
-/// ```
-/// use featherbench_contact::systems::Incline;
-/// use featherbench_contact::{Admm, Solver};
-/// let problem = Incline::default().problem()?;
-/// let point = Admm::default().solve(&problem)?.point().cloned().ok_or("no answer")?;
-/// assert!(point.residuals.natural_map < 1e-9);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Admm {
     /// ρ, in units of the largest diagonal entry of G. Without it √(λ_min λ_max), λ_min the smallest eigenvalue of the scaled matrix above
@@ -95,6 +86,6 @@ impl Solver for Admm {
         }
         let (iterations, point) = (steps.len(), standard.point(problem, &z));
         let outcome = Outcome::judged(point, residual <= self.tolerance, iterations >= self.iterations);
-        Ok(Solution { outcome, model: Model::Coulomb, iterations, steps })
+        Ok(Solution { outcome, iterations, steps })
     }
 }

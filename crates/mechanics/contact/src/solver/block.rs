@@ -22,18 +22,10 @@ use super::standard::Standard;
 use super::{Solver, Unsupported, positive};
 use crate::cones;
 use crate::problem::{Friction, Mechanism, Problem};
-use crate::solution::{Model, Outcome, Solution};
+use crate::solution::{Outcome, Solution};
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3};
 
 /// Nonsmooth Gauss–Seidel with exact contacts.
-///
-/// ```
-/// use featherbench_contact::systems::Feet;
-/// use featherbench_contact::{BlockGaussSeidel, Solver};
-/// let solution = BlockGaussSeidel::default().solve(&Feet::default().problem()?)?;
-/// assert!(solution.point().ok_or("no answer")?.residuals.natural_map < 1e-9);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlockGaussSeidel {
     /// The largest natural-map residual of an answer, free of units.
@@ -60,7 +52,7 @@ impl Solver for BlockGaussSeidel {
         let residual = blocks.residual();
         let point = blocks.standard.point(problem, &blocks.impulses());
         let outcome = Outcome::judged(point, residual <= self.tolerance, iterations >= self.sweeps);
-        Ok(Solution { outcome, model: Model::Coulomb, iterations, steps: Vec::new() })
+        Ok(Solution { outcome, iterations, steps: Vec::new() })
     }
 }
 
@@ -70,15 +62,6 @@ const LANES: usize = 8;
 const TURNS: usize = 4;
 
 /// A problem in the form that is swept, and its impulses: standard axes, free of units.
-///
-/// ```
-/// use featherbench_contact::systems::Feet;
-/// use featherbench_contact::solver::{BlockGaussSeidel, Blocks};
-/// let mut blocks = Blocks::new(&Feet::default().problem()?)?;
-/// let sweeps = blocks.run(&BlockGaussSeidel::default());
-/// assert!(sweeps > 0 && blocks.residual() < 1e-10);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub struct Blocks {
     standard: Standard,
     contacts: Vec<Contact>,

@@ -10,23 +10,13 @@
 
 use super::{Solver, Unsupported, spatial};
 use crate::extended::{self, Matrix, Solved};
-use crate::problem::{Friction, Problem};
-use crate::solution::{Certificate, Model, Outcome, Point, Solution};
+use crate::problem::{Friction, Mechanism, Problem};
+use crate::solution::{Certificate, Outcome, Point, Solution};
 use featherbench_spatial::larger;
 use featherbench_spatial::{DoubleDouble, Real};
 use nalgebra::{DVector, SymmetricEigen};
 
 /// Enumeration of all modes.
-///
-/// ```
-/// use featherbench_contact::systems::PainleveRod;
-/// use featherbench_contact::{Enumeration, Outcome, Solver};
-/// // The rod turns at 4 rad/s: it may lift off, or press itself into the ground.
-/// let rod = PainleveRod { friction: 1.5, rate: 4.0, ..PainleveRod::default() };
-/// let Outcome::Several(points) = Enumeration::default().solve(&rod.problem()?)?.outcome else { panic!() };
-/// assert_eq!(points.len(), 2);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enumeration {
     /// The most modes to try.
@@ -61,7 +51,7 @@ impl Exact {
         let power = |x: f64| 2.0_f64.powi(x.log2().round() as i32);
         let (velocity, impulse) = (power(scales.velocity), power(scales.impulse));
         let given = || (extended::wide(problem.delassus()), problem.free().iter().map(|b| DoubleDouble::from_f64(*b)).collect::<Vec<_>>());
-        let exact = problem.mechanism().and_then(extended::delassus);
+        let exact = problem.mechanism().and_then(Mechanism::delassus);
         let known = exact.is_some();
         let (matrix, free) = exact.unwrap_or_else(given);
         let scaled = |value: DoubleDouble, factor: f64| value * DoubleDouble::from_f64(factor);
@@ -216,7 +206,7 @@ impl Solver for Enumeration {
             1 => Outcome::Converged(points.remove(0)),
             _ => Outcome::Several(points),
         };
-        Ok(Solution { outcome, model: Model::Coulomb, iterations: search.modes, steps: Vec::new() })
+        Ok(Solution { outcome, iterations: search.modes, steps: Vec::new() })
     }
 }
 

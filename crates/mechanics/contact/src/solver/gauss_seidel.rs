@@ -6,21 +6,10 @@
 use super::standard::Standard;
 use super::{Solver, Unsupported, positive};
 use crate::problem::Problem;
-use crate::solution::{Model, Outcome, Solution};
+use crate::solution::{Outcome, Solution};
 use nalgebra::DVector;
 
 /// Projected Gauss–Seidel. O(rows²) per sweep.
-///
-/// ```
-/// use featherbench_contact::systems::Stack;
-/// use featherbench_contact::{GaussSeidel, Solver};
-/// let problem = Stack::two(10.0).problem()?;
-/// let solution = GaussSeidel::default().solve(&problem)?;
-/// assert_eq!(solution.status(), "converged");
-/// // A cap that is too low is no convergence.
-/// assert_eq!(GaussSeidel { sweeps: 10, ..GaussSeidel::default() }.solve(&problem)?.status(), "cap_reached");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaussSeidel {
     /// The largest natural-map residual of an answer, free of units.
@@ -52,6 +41,6 @@ impl Solver for GaussSeidel {
         }
         let (iterations, point) = (steps.len(), standard.point(problem, &x));
         let outcome = Outcome::judged(point, residual <= self.tolerance, iterations >= self.sweeps);
-        Ok(Solution { outcome, model: Model::Coulomb, iterations, steps })
+        Ok(Solution { outcome, iterations, steps })
     }
 }

@@ -23,16 +23,6 @@ pub struct Lcp {
 
 impl Lcp {
     /// The complementarity problem. A round cone becomes a pyramid with this many vertices.
-    ///
-    /// ```
-    /// use featherbench_contact::systems::PainleveRod;
-    /// use featherbench_contact::Lcp;
-    /// // A sliding contact has one unknown: ÿ = b + p N.
-    /// let lcp = Lcp::new(&PainleveRod { friction: 1.5, ..PainleveRod::default() }.problem()?, 8);
-    /// assert_eq!(lcp.matrix.shape(), (1, 1));
-    /// assert!(lcp.matrix[(0, 0)] < 0.0 && lcp.constant[0] < 0.0);
-    /// # Ok::<(), featherbench_contact::Malformed>(())
-    /// ```
     pub fn new(problem: &Problem, directions: usize) -> Self {
         let scales = problem.scales();
         let rows = problem.rows();

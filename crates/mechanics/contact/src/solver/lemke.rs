@@ -5,20 +5,12 @@
 
 use super::lcp::Lcp;
 use super::{Solver, Unsupported};
-use crate::problem::{Friction, Problem};
-use crate::solution::{Certificate, Model, Outcome, Point, Solution};
+use crate::problem::Problem;
+use crate::solution::{Certificate, Outcome, Point, Solution};
 use featherbench_spatial::{DoubleDouble, Real};
 use nalgebra::{DMatrix, DVector};
 
 /// Lemke's method. Exact for planar contacts and pyramids; a round cone becomes an inscribed pyramid.
-///
-/// ```
-/// use featherbench_contact::systems::Table;
-/// use featherbench_contact::{Lemke, Solver};
-/// let solution = Lemke::default().solve(&Table::default().problem()?)?;
-/// assert_eq!(solution.status(), "converged");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lemke {
     /// The vertices of the pyramid that stands for a round cone, at least 3.
@@ -44,9 +36,6 @@ impl Solver for Lemke {
             return Err(Unsupported::Setting { solver: self.name(), setting, value, advice });
         }
         let lcp = Lcp::new(problem, self.directions);
-        let round = |friction: &Friction| matches!(friction, Friction::Coulomb { coefficients } if coefficients.len() == 2);
-        let polyhedral = problem.contacts().iter().any(|contact| round(&contact.friction));
-        let model = if polyhedral { Model::Polyhedral { directions: self.directions } } else { Model::Coulomb };
         let (end, iterations) = pivot(&lcp.matrix, &lcp.constant, self.pivots);
         let outcome = match end {
             End::Solved(z) => Outcome::Converged(Point::new(problem, lcp.impulses(&z))),
@@ -56,7 +45,7 @@ impl Solver for Lemke {
                 proof(&lcp, &direction).map_or_else(|| Outcome::Ray { direction: direction.iter().copied().collect() }, Outcome::NoSolution)
             }
         };
-        Ok(Solution { outcome, model, iterations, steps: Vec::new() })
+        Ok(Solution { outcome, iterations, steps: Vec::new() })
     }
 }
 

@@ -8,20 +8,11 @@ use super::standard::Standard;
 use super::{Solver, Unsupported, positive};
 use crate::cones::{self, Linearized};
 use crate::problem::Problem;
-use crate::solution::{Model, Outcome, Solution};
+use crate::solution::{Outcome, Solution};
 use featherbench_spatial::{larger, smaller};
 use nalgebra::{DMatrix, DVector};
 
 /// Newton's method on the true laws (function of Alart and Curnier). O(rows³) per step.
-///
-/// ```
-/// use featherbench_contact::systems::Kane;
-/// use featherbench_contact::{Newton, Solver};
-/// let problem = Kane::default().problem()?;
-/// let point = Newton::default().solve(&problem)?.point().cloned().ok_or("no answer")?;
-/// assert!(point.residuals.natural_map < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Newton {
     /// The largest residual of an answer, free of units.
@@ -65,15 +56,6 @@ impl Default for Convex {
 }
 
 /// Compliant contacts: λ_n = k max(0, −c_n), λ_t = the point of the friction disk next to −k c_t. The laws hold as k grows, with errors 1/k.
-///
-/// ```
-/// use featherbench_contact::systems::Incline;
-/// use featherbench_contact::{Penalty, Solver};
-/// let solution = Penalty { stiffness: 1e3, ..Penalty::default() }.solve(&Incline::default().problem()?)?;
-/// let residuals = solution.point().ok_or("no answer")?.residuals;
-/// assert!(residuals.signorini > 1e-4 && residuals.signorini < 1e-2);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Penalty {
     /// k, in units of the problem's impulse scale by its velocity scale.
@@ -97,7 +79,7 @@ impl Solver for Newton {
 
     fn solve(&self, problem: &Problem) -> Result<Solution, Unsupported> {
         let standard = Standard::new(problem, self.name(), true)?;
-        run(problem, &Law { standard, convex: false, compliance: 0.0 }, self.name(), (self.tolerance, self.steps), Model::Coulomb)
+        run(problem, &Law { standard, convex: false, compliance: 0.0 }, self.name(), (self.tolerance, self.steps))
     }
 }
 
@@ -108,7 +90,7 @@ impl Solver for Convex {
 
     fn solve(&self, problem: &Problem) -> Result<Solution, Unsupported> {
         let standard = Standard::new(problem, self.name(), false)?;
-        run(problem, &Law { standard, convex: true, compliance: 0.0 }, self.name(), (self.tolerance, self.steps), Model::Convex)
+        run(problem, &Law { standard, convex: true, compliance: 0.0 }, self.name(), (self.tolerance, self.steps))
     }
 }
 
@@ -121,7 +103,7 @@ impl Solver for Penalty {
         positive(self.name(), "stiffness", self.stiffness)?;
         let standard = Standard::new(problem, self.name(), false)?;
         let law = Law { standard, convex: false, compliance: 1.0 / self.stiffness };
-        run(problem, &law, self.name(), (self.tolerance, self.steps), Model::Compliant { stiffness: self.stiffness })
+        run(problem, &law, self.name(), (self.tolerance, self.steps))
     }
 }
 
@@ -221,7 +203,7 @@ const LOWER: f64 = 0.9;
 /// A singular value below this part of the largest counts as zero: rounding leaves 1e-16 per row.
 const RANK: f64 = 1e-12;
 
-fn run(problem: &Problem, law: &Law, name: &'static str, (tolerance, cap): (f64, usize), model: Model) -> Result<Solution, Unsupported> {
+fn run(problem: &Problem, law: &Law, name: &'static str, (tolerance, cap): (f64, usize)) -> Result<Solution, Unsupported> {
     positive(name, "tolerance", tolerance)?;
     let mut x = DVector::zeros(law.standard.size());
     let (mut steps, mut sweeps) = (Vec::new(), SWEEPS);
@@ -266,7 +248,7 @@ fn run(problem: &Problem, law: &Law, name: &'static str, (tolerance, cap): (f64,
     }
     let (iterations, point) = (steps.len(), law.standard.point(problem, &x));
     let outcome = Outcome::judged(point, residual <= tolerance, iterations >= cap);
-    Ok(Solution { outcome, model, iterations, steps })
+    Ok(Solution { outcome, iterations, steps })
 }
 
 /// How a Newton step is found.

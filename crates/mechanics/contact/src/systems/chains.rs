@@ -26,15 +26,6 @@ impl Stack {
 
     /// The problem: contact k is below body k.
     ///
-    /// ```
-    /// use featherbench_contact::{Lemke, Solver, systems::Stack};
-    /// let stack = Stack::two(1000.0);
-    /// let solution = Lemke::default().solve(&stack.problem()?)?;
-    /// let found = &solution.point().ok_or("no answer")?.impulses;
-    /// assert!(found.iter().zip(stack.forces()).all(|(found, known)| (found - known).abs() < 1e-12 * known));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
     /// [`Malformed`] if a mass is not positive or there is none.
     pub fn problem(&self) -> Result<Problem, Malformed> {
@@ -102,19 +93,6 @@ impl Cradle {
     }
 
     /// The balls' velocities after impulses at the contacts.
-    ///
-    /// ```
-    /// use featherbench_contact::impact::{Law, impact, sequence};
-    /// use featherbench_contact::systems::Cradle;
-    /// let cradle = Cradle::default();
-    /// let problem = cradle.problem()?;
-    /// // One after another: the right ball flies off. At once: all move.
-    /// let after = |impulses: &[f64]| cradle.velocities_after(impulses);
-    /// assert_eq!(after(sequence(&problem, Law::Newton, &[0, 1], 10)?.end.impulses.as_slice()), [0.0, 0.0, 1.0]);
-    /// let at_once = after(impact(&problem, Law::Newton)?.impulses.as_slice());
-    /// assert!((at_once[0] + 1.0 / 3.0).abs() < 1e-15);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn velocities_after(&self, impulses: &[f64]) -> Vec<f64> {
         let impulse = |k: usize| impulses.get(k).copied().unwrap_or(0.0);
         let left = |k: usize| if k == 0 { 0.0 } else { impulse(k - 1) };

@@ -33,12 +33,6 @@ impl Default for Kane {
 impl Kane {
     /// The impact of the tip.
     ///
-    /// ```
-    /// let problem = featherbench_contact::systems::Kane::default().problem()?;
-    /// assert!((problem.free()[0] + 0.134202014).abs() < 1e-9);
-    /// # Ok::<(), featherbench_contact::Malformed>(())
-    /// ```
-    ///
     /// # Errors
     /// [`Malformed`] if a parameter is not finite or out of its range.
     pub fn problem(&self) -> Result<Problem, Malformed> {

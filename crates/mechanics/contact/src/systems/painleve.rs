@@ -11,13 +11,6 @@ use nalgebra::{DMatrix, DVector};
 /// ```
 ///
 /// Source: P. Painlevé 1895; F. Génot and B. Brogliato, *New results on Painlevé paradoxes* (1999).
-///
-/// ```
-/// use featherbench_contact::systems::{Answers, PainleveRod};
-/// let rod = PainleveRod { friction: 1.5, ..PainleveRod::default() };
-/// assert_eq!(rod.answers(), Answers::None);
-/// assert!((rod.critical_friction() - 4.0 / 3.0).abs() < 1e-15);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PainleveRod {
     /// m in kg.

@@ -32,18 +32,6 @@ impl Table {
 
     /// The problem: dofs z and two tilts of the plate about its centre of mass.
     ///
-    /// ```
-    /// use featherbench_contact::{Enumeration, Solver, systems::Table};
-    /// let table = Table::default();
-    /// let solution = Enumeration::default().solve(&table.problem()?)?;
-    /// // The ends of the line of all forces: each has a leg without load.
-    /// assert_eq!(solution.points().len(), 2);
-    /// for point in solution.points() {
-    ///     assert!(table.distance(point.impulses.as_slice()) < 1e-12);
-    /// }
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
     /// [`Malformed`] if a parameter is not finite or the weight is not positive.
     pub fn problem(&self) -> Result<Problem, Malformed> {
@@ -81,13 +69,6 @@ impl Table {
 }
 
 /// Flat rectangular feet, each a free rigid body with a load above it: four spatial contacts per foot, 12 rows of rank 6.
-///
-/// ```
-/// let problem = featherbench_contact::systems::Feet::default().problem()?;
-/// assert_eq!(problem.rows(), 24);
-/// assert_eq!(problem.delassus().rank(1e-10), 12);
-/// # Ok::<(), featherbench_contact::Malformed>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feet {
     /// How many feet.

@@ -4,8 +4,7 @@
 //! of statics have closed forms: of a cantilever with a tip load, δ/δ_exact = 1 + 3/(2n) + 1/(2n²) for [`Hinges::Start`], 1 + 1/(2n²) for
 //! [`Hinges::StartStiffWall`], 1 − 1/(4n²) for [`Hinges::Middle`].
 
-use super::{Hinges, add_piece, along, joint_of, massless};
-use crate::assembly::{Host, Made, Spring};
+use super::{Hinges, Host, Made, Spring, add_piece, along, joint_of, massless};
 use crate::{Rod, Strain};
 use featherbench_model::{BodyDescription, JointType};
 

@@ -5,8 +5,7 @@
 //! The slides and turns are q = Φ s, with Φ_{kj} = φ_j(x_k): so M = Σ_k w_k ρA φ(x_k) φ(x_k)ᵀ is the mass matrix of the rod as far as the
 //! Gauss rule is exact. The stiffness is ∫ EI φ'' φ''ᵀ, ∫ EA φ' φ'ᵀ or ∫ GJ φ' φ'ᵀ by the same rule.
 
-use super::{along, along_x, joint_of, massless};
-use crate::assembly::{Host, Made, Piece, Ties};
+use super::{Host, Made, Piece, Ties, along, along_x, joint_of, massless};
 use crate::{Basis, Rod, Strain};
 use featherbench_model::BodyDescription;
 use nalgebra::DMatrix;

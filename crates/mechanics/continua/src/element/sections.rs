@@ -4,8 +4,7 @@
 //! whose poses these are. Here each Gauss point is a body on a free joint from the point before. Let Δ be the distance of the two. The
 //! joint is at exp(Δ ξ). Its velocity in body axes is J(Δ ξ) Δ ξ̇, with the right Jacobian J of the exponential.
 
-use super::{along, massless};
-use crate::assembly::{Host, Made, Piece, Ties};
+use super::{Host, Made, Piece, Ties, along, massless};
 use crate::{Rod, Strain};
 use featherbench_model::{BodyDescription, JointType};
 use nalgebra::{DMatrix, DVector};

@@ -1,7 +1,6 @@
 //! A string: links without springs.
 
-use super::{Masses, add_piece, along, joint_of, massless};
-use crate::assembly::{Host, Made};
+use super::{Host, Made, Masses, add_piece, along, joint_of, massless};
 use crate::{Rod, Strain};
 use featherbench_model::BodyDescription;
 

@@ -12,13 +12,6 @@ use featherbench_spatial::Real;
 ///
 /// From rest at h it hits the ground at t₁ = √(2h/g) with the speed g t₁. The k-th flight after that takes 2eᵏt₁ and rises by e²ᵏh. The
 /// sums are geometric.
-///
-/// ```
-/// // t₁(1 + e)/(1 − e) with t₁ = 1 s: three times that for e = ½. The path is 5/3 of the height.
-/// use featherbench_hybrid::systems::BouncingBall;
-/// assert_eq!(BouncingBall::zeno_time(5.0, 10.0, 0.5), 3.0);
-/// assert!((BouncingBall::path(3.0_f64, 0.5) - 5.0).abs() < 1e-15);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BouncingBall;
 

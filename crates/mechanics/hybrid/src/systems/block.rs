@@ -17,15 +17,6 @@ use featherbench_spatial::Real;
 /// The block neither slides nor bounces. Past |ϑ| = α it overturns, and nothing here stops it.
 ///
 /// Source: G. W. Housner, *The behavior of inverted pendulum structures during earthquakes* (1963).
-///
-/// ```
-/// use featherbench_hybrid::systems::RockingBlock;
-/// assert!((RockingBlock::ratio(1.0_f64, 4.0) - 31.0 / 34.0).abs() < 1e-15);
-/// let alpha = 0.25_f64.atan();
-/// // sin is below its argument, so the true block is slower.
-/// assert!(RockingBlock::quarter(alpha, 0.5 * alpha)? > RockingBlock::linear_quarter(alpha, 0.5 * alpha)?);
-/// # Ok::<(), featherbench_hybrid::HybridError>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RockingBlock;
 

@@ -10,13 +10,6 @@ use featherbench_spatial::Real;
 /// ```text
 /// ṗ = v, v̇ = (0, −g)     n·p − d falls through 0     v⁺ = H v⁻,  H = 1 − (1 + e) n nᵀ
 /// ```
-///
-/// ```
-/// // A wall to the right of which the ball is: gravity runs along it, and the ball passes in y.
-/// use featherbench_hybrid::systems::SlantedBox;
-/// let known = [[-0.5, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, -0.5, 0.0], [0.0, 0.0, 0.0, 1.0]];
-/// assert_eq!(SlantedBox::saltation(10.0, 0.5, 0.0, [-1.0, 3.0]), known);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SlantedBox {
     /// The number of walls.

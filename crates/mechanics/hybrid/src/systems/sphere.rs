@@ -11,11 +11,6 @@ use featherbench_spatial::Real;
 /// | 1: rolling | v̇ = 0, ω̇ = 0 | none |
 ///
 /// No reset changes the state.
-///
-/// ```
-/// use featherbench_hybrid::systems::SlidingSphere;
-/// assert_eq!(SlidingSphere::rolling_time(7.0, 0.5, 10.0), 0.4);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SlidingSphere;
 

@@ -11,12 +11,6 @@ use featherbench_spatial::Real;
 ///
 /// Source: P. J. Holmes, *The dynamics of repeated impacts with a sinusoidally vibrating table* (1982), without its assumption of high
 /// flights.
-///
-/// ```
-/// // A table at rest is the ground.
-/// use featherbench_hybrid::systems::MovingTable;
-/// assert_eq!(MovingTable::saltation(0.3, -2.0, &[10.0, 0.5, 0.0, 1.0]), [-0.5, 0.0, 7.5, -0.5]);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MovingTable;
 

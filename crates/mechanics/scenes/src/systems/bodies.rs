@@ -1,6 +1,6 @@
 //! Single bodies: inclines, a sphere that begins to roll, Painlevé's rod, a block that rocks, a ball that bounces.
 
-use super::{Measure, Question, SHORT_STEPS, STEPS};
+use super::{Measure, Question, SHORT_STEPS, STEPS, level};
 use crate::scene::{Body, Scene};
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -124,13 +124,7 @@ impl Sliding {
         let (rolling, start) = (5.0 / 7.0 * self.speed, self.rolls_at());
         let way = self.speed * start - self.friction * self.gravity * start * start / 2.0 + rolling * (self.duration - start);
         Question {
-            scene: Scene {
-                name: "sliding_sphere".into(),
-                gravity: [0.0, 0.0, -self.gravity],
-                friction: self.friction,
-                restitution: 0.0,
-                bodies: vec![ball],
-            },
+            scene: level("sliding_sphere", self.gravity, self.friction, vec![ball]),
             duration: self.duration,
             dts: STEPS,
             measures: vec![
@@ -180,13 +174,7 @@ impl Rod {
         rod.linear[0] = self.slip;
         let slip = self.slip;
         Question {
-            scene: Scene {
-                name: "painleve_rod".into(),
-                gravity: [0.0, 0.0, -self.gravity],
-                friction: self.friction,
-                restitution: 0.0,
-                bodies: vec![rod],
-            },
+            scene: level("painleve_rod", self.gravity, self.friction, vec![rod]),
             duration: 0.02,
             dts: SHORT_STEPS,
             measures: vec![
@@ -264,13 +252,7 @@ impl Block {
         let energy = move |height: f64, linear: f64, angular: f64| g * (height - h) + linear / 2.0 + moment * angular / 2.0;
         let start = energy(centre.z, speed, angular.norm_squared());
         Question {
-            scene: Scene {
-                name: "rocking_block".into(),
-                gravity: [0.0, 0.0, -g],
-                friction: self.friction,
-                restitution: 0.0,
-                bodies: vec![block],
-            },
+            scene: level("rocking_block", g, self.friction, vec![block]),
             duration: 0.08,
             dts: SHORT_STEPS,
             measures: vec![Measure::new("energy_ratio", "1", self.ratio().powi(2), 1.0, move |motion| {

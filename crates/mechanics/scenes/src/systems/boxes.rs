@@ -1,9 +1,9 @@
 //! A stack of boxes: it rests, and each contact plane carries the weight above it.
 
 use super::loads::load_error;
-use super::{Measure, Question, STEPS};
+use super::{Measure, Question, STEPS, level};
 use crate::motion::Motion;
-use crate::scene::{Body, Geometry, Scene, Shape};
+use crate::scene::{Body, Geometry, Shape};
 use featherbench_spatial::larger;
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -81,13 +81,7 @@ impl BoxStack {
         let start: f64 = masses.iter().zip(&heights).map(|(of, height)| of.0 * gravity * height).sum();
         let (boxes, top) = (self.boxes, heights.last().copied().unwrap_or_default());
         Question {
-            scene: Scene {
-                name: format!("boxes_{}_{:.0}", self.boxes, self.top),
-                gravity: [0.0, 0.0, -gravity],
-                friction: self.friction,
-                restitution: 0.0,
-                bodies,
-            },
+            scene: level(format!("boxes_{}_{:.0}", self.boxes, self.top), gravity, self.friction, bodies),
             duration: 0.4,
             dts: STEPS,
             measures: vec![

@@ -1,8 +1,8 @@
 //! Loads that are shared: a box on balls, a stack of balls, a table on four legs.
 
-use super::{Measure, Question, STEPS};
+use super::{Measure, Question, STEPS, level};
 use crate::motion::Motion;
-use crate::scene::{Body, Geometry, Scene, Shape};
+use crate::scene::{Body, Geometry, Shape};
 use featherbench_spatial::larger;
 use nalgebra::{DMatrix, DVector, Vector3};
 use serde::Serialize;
@@ -61,13 +61,7 @@ impl BoxOnBalls {
         let by_way = |way: f64| 2.0 * way / (DURATION * DURATION);
         let middle_of = move |motion: &Motion| (1..=balls).map(|k| motion.position(motion.last(), k).x).sum::<f64>() / balls as f64;
         Question {
-            scene: Scene {
-                name: "box_on_balls".into(),
-                gravity: [0.0, 0.0, -self.gravity],
-                friction: self.friction,
-                restitution: 0.0,
-                bodies,
-            },
+            scene: level("box_on_balls", self.gravity, self.friction, bodies),
             duration: DURATION,
             dts: STEPS,
             measures: vec![
@@ -110,13 +104,7 @@ impl Stack {
         let above: Vec<f64> = (0..self.balls).map(|k| self.gravity * (k..self.balls).map(mass).sum::<f64>()).collect();
         let (balls, radius) = (self.balls, self.radius);
         Question {
-            scene: Scene {
-                name: format!("stack_{:.0}", self.top),
-                gravity: [0.0, 0.0, -self.gravity],
-                friction: 0.5,
-                restitution: 0.0,
-                bodies,
-            },
+            scene: level(format!("stack_{:.0}", self.top), self.gravity, 0.5, bodies),
             duration: 0.4,
             dts: STEPS,
             measures: vec![
@@ -192,7 +180,7 @@ impl Table {
         }
         let half = self.half;
         Question {
-            scene: Scene { name: "table".into(), gravity: [0.0, 0.0, -self.gravity], friction: 0.5, restitution: 0.0, bodies: vec![table] },
+            scene: level("table", self.gravity, 0.5, vec![table]),
             duration: 0.4,
             dts: STEPS,
             measures: vec![

@@ -25,7 +25,7 @@ pub use loads::{BoxOnBalls, Stack, Table};
 pub use standing::{Foot, Locked, Standing};
 
 use crate::motion::Motion;
-use crate::scene::Scene;
+use crate::scene::{Body, Scene};
 
 /// A number of a motion that has an exact value in rigid mechanics.
 pub struct Measure {
@@ -86,6 +86,11 @@ impl Question {
     pub fn steps(&self, dt: f64) -> usize {
         (self.duration / dt).round() as usize
     }
+}
+
+/// A scene under vertical gravity, m/s², without restitution.
+fn level(name: impl Into<String>, gravity: f64, friction: f64, bodies: Vec<Body>) -> Scene {
+    Scene { name: name.into(), gravity: [0.0, 0.0, -gravity], friction, restitution: 0.0, bodies }
 }
 
 /// The usual steps, s.

@@ -7,8 +7,8 @@
 //!          [ m [c]×  I_o    ]     I_c = I_o − m (c·c 1 − c cᵀ)
 //! ```
 
-use super::{Measure, Question, STEPS};
-use crate::scene::{Body, Scene};
+use super::{Measure, Question, STEPS, level};
+use crate::scene::Body;
 use featherbench_dynamics::{DimensionError, Kinematics, mass_matrix};
 use featherbench_model::{Model, neutral};
 use featherbench_robots::Family;
@@ -144,7 +144,7 @@ impl Standing {
         let weight = mass * gravity;
         let due = weight * Vector3::new(-self.push[0], -self.push[1], 1.0);
         Question {
-            scene: Scene { name: self.name.into(), gravity: [0.0, 0.0, -gravity], friction: self.friction, restitution: 0.0, bodies },
+            scene: level(self.name, gravity, self.friction, bodies),
             duration: 0.4,
             dts: STEPS,
             measures: vec![
