@@ -106,14 +106,6 @@ impl<'a> Grounded<'a> {
         &self.touches
     }
 
-    /// The height of each point above the ground at configuration `q`, m.
-    ///
-    /// # Errors
-    /// [`GroundedError::Dimension`]: `q` does not fit, or a touch is on no body.
-    pub fn heights(&self, q: &[f64]) -> Result<Vec<f64>, GroundedError> {
-        Ok(self.places(q)?.into_iter().map(|place| place.arm.z + place.origin.z).collect())
-    }
-
     fn places(&self, q: &[f64]) -> Result<Vec<Place>, GroundedError> {
         expect_finite("configuration q", q)?;
         let still = vec![0.0; self.model.topology.nv()];

@@ -21,7 +21,7 @@ pub fn gauss_seidel(problem: &Problem) -> Option<f64> {
 
 /// The factor by which the error of ADMM falls each iteration while every contact stays inside its cone: ρ/(ρ + λ_min).
 ///
-/// λ_min is the smallest eigenvalue of G divided by the largest diagonal entry, `rho` is in the same unit; see [`crate::Admm::penalty`].
+/// λ_min is the smallest eigenvalue of G divided by the largest diagonal entry, `rho` is in the same unit; see [`crate::Admm::rho`].
 /// So this is for contacts without friction, or with μ = 1, where the solver's axes are the problem's.
 pub fn admm(problem: &Problem, rho: f64) -> f64 {
     let largest = problem.delassus().diagonal().amax();

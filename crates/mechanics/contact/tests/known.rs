@@ -1,6 +1,6 @@
 //! What is known of `systems` beside the cases of the study `contact`.
 
-use featherbench_contact::systems::{BoxOnBalls, Incline, RockingBlock, Section, Table};
+use featherbench_contact::systems::{BoxOnBalls, Incline, Section, Table};
 use featherbench_contact::{Admm, Convex, Enumeration, GaussSeidel, Lemke, Newton, Penalty, Point, Problem, Solver};
 
 /// Direct solvers: ≤ 1e-10 on every residual, as the issue asks.
@@ -14,9 +14,9 @@ fn solved(solver: &dyn Solver, problem: &Problem) -> Point {
 /// A pyramid is felt at 45°: μ/√2 or √2 μ. Along an axis both are as wide as the cone, and an axis-aligned test hides them.
 #[test]
 fn pyramids_hide_along_their_axes() {
-    for section in [Section::Inscribed, Section::Box] {
+    for (section, factor) in [(Section::Inscribed, std::f64::consts::FRAC_1_SQRT_2), (Section::Box, std::f64::consts::SQRT_2)] {
         let turned = Incline { section, ..Incline::default() };
-        for (incline, felt) in [(turned, turned.felt_friction().unwrap()), (Incline { heading: 0.0, ..turned }, turned.friction)] {
+        for (incline, felt) in [(turned, factor * turned.friction), (Incline { heading: 0.0, ..turned }, turned.friction)] {
             let point = solved(&Lemke::default(), &incline.problem().unwrap());
             assert!((point.velocities.rows(1, 2).norm() - incline.speed_after(felt)).abs() < 1e-14, "{section:?}");
             assert!(point.residuals.largest() <= DIRECT, "{section:?} {:?}", point.residuals);
@@ -104,15 +104,6 @@ fn a_table_has_least_forces() {
     let least = equations.pseudo_inverse(1e-12).unwrap() * load;
     assert!(least.iter().zip(table.least_forces()).all(|(a, b)| (a - b).abs() < 1e-14), "{least}");
     assert_eq!(problem.delassus().rank(1e-12), 3);
-}
-
-/// The landing corner slips with less than the least friction, and the block keeps another part of its rate.
-#[test]
-fn blocks_slip_on_smooth_ground() {
-    let block = RockingBlock::default();
-    let slippery = RockingBlock { friction: 0.9 * block.least_friction(), ..block };
-    let point = solved(&Enumeration::default(), &slippery.problem().unwrap());
-    assert!(block.least_friction() < 1.0 && point.velocities[3].abs() > 1e-3);
 }
 
 /// The compliant answer differs from the rigid one by a part proportional to 1/k.

@@ -225,20 +225,6 @@ impl Continuum {
         Ok(of_springs.sum::<f64>() + of_plates.sum::<f64>())
     }
 
-    /// The power that damping takes, ẋᵀ D ẋ.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when the velocity does not fit.
-    pub fn dissipation(&self, rate: &[f64]) -> Result<f64, DimensionError> {
-        DimensionError::expect("velocity of s", self.topology.nv(), rate.len())?;
-        let of_springs = self.springs.iter().map(|spring| spring.damping * rate[spring.v] * rate[spring.v]);
-        let of_plates = self.plates.iter().map(|Plate { v, stiffness, damping, .. }| {
-            let x = nalgebra::DVectorView::from_slice(&rate[*v..], stiffness.nrows());
-            damping * x.dot(&(stiffness * x))
-        });
-        Ok(of_springs.sum::<f64>() + of_plates.sum::<f64>())
-    }
-
     /// The stiffness matrix K, dense, nv × nv; zero at the robot's own joints.
     pub fn stiffness_matrix(&self) -> DMatrix<f64> {
         self.dense(|spring| spring.stiffness, |_| 1.0)

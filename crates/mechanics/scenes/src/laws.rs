@@ -1,21 +1,6 @@
 //! Laws of contact models that are not the rigid one: what they do where the rigid answer is known.
 
-/// Friction that a body feels along its way over that of the round cone, if the friction forces are in an inscribed pyramid.
-///
-/// The pyramid is inscribed in the cone with its corners on the tangent axes. The corner that dissipates most acts: max(|cos φ|, |sin φ|).
-/// `heading` is φ in rad.
-pub fn inscribed_pyramid_felt(heading: f64) -> f64 {
-    let (sine, cosine) = heading.sin_cos();
-    sine.abs().max(cosine.abs())
-}
-
-/// The same of a box |f₁| ≤ μN, |f₂| ≤ μN: |cos φ| + |sin φ|.
-pub fn box_pyramid_felt(heading: f64) -> f64 {
-    let (sine, cosine) = heading.sin_cos();
-    sine.abs() + cosine.abs()
-}
-
-/// The same of round cones whose force is not opposed to the slip v but along K⁻¹ v.
+/// Friction that a body feels along its way over that of the round cone, where the force is not opposed to the slip v but along K⁻¹ v.
 ///
 /// A sweep leaves such a force if it solves both tangential rows at once and shortens the result to μN. K is the tangential block of the
 /// inverse mass that the contact sees:

@@ -29,7 +29,7 @@ mod touch;
 mod variant;
 
 pub use fit::Fit;
-pub use laws::{SoftContact, block_step_felt, box_pyramid_felt, inscribed_pyramid_felt};
+pub use laws::{SoftContact, block_step_felt};
 pub use motion::{Motion, Push};
 pub use scene::{Body, Geometry, Scene, SceneError, Shape};
 pub use step::{OwnSolver, StepProblem, StepSolver, simulate};

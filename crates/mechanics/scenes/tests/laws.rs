@@ -1,54 +1,6 @@
-//! Exact answers and laws by a second route.
+//! Laws of contact models by a second route.
 
-use featherbench_contact::systems::PainleveRod;
-use featherbench_scenes::systems::{Block, BoxOnBalls, Incline, Rod, Sliding, Table};
-use featherbench_scenes::{Fit, SoftContact, block_step_felt, box_pyramid_felt, inscribed_pyramid_felt};
-use featherbench_spatial::larger;
-
-#[test]
-fn known_forms_by_other_routes() {
-    // Energy and the angular momentum about the contact: v = v₀ I-free part, 1/(1 + 2/5).
-    let sphere = Sliding::default();
-    let rolling = sphere.question().measures[0].exact;
-    assert!(
-        (rolling - sphere.speed / 1.4).abs() < 1e-15
-            && (rolling - (sphere.speed - sphere.friction * sphere.gravity * sphere.rolls_at())).abs() < 1e-14
-    );
-    // Housner: angular momentum about the new foot is kept, (I + m(h² − b²)) ω⁻ = (I + m(h² + b²)) ω⁺.
-    let block = Block::default();
-    let (b, h) = (block.half_width.powi(2), block.half_height.powi(2));
-    let moment = (b + h) / 3.0;
-    assert!((block.ratio() - (moment + h - b) / (moment + h + b)).abs() < 1e-15 && (block.ratio() - 31.0 / 34.0).abs() < 1e-15);
-    // A box on balls: momentum of the whole and spin of a ball, solved for a.
-    let scene = BoxOnBalls::default();
-    let (a, n) = (scene.acceleration(), (scene.side * scene.side) as f64);
-    let (top, ground) = (0.35 * a * scene.ball, 0.15 * a * scene.ball);
-    assert!((top + ground - scene.ball * a / 2.0).abs() < 1e-14 && (top - ground - 0.4 * scene.ball * a / 2.0).abs() < 1e-14);
-    assert!((scene.force - n * top - scene.mass * a).abs() < 1e-13);
-    assert!(top <= scene.friction * scene.mass * scene.gravity / n, "the box would slip");
-    // No force obeys the laws where p < 0.
-    let rod = Rod::default();
-    assert!((rod.coefficient() + 0.2).abs() < 1e-14);
-    assert!(rod.friction > PainleveRod { friction: rod.friction, ..PainleveRod::default() }.critical_friction());
-    // The least forces hold W about the centre.
-    let table = Table::default();
-    let least = table.least_forces();
-    assert_eq!(least.map(|force| (force * 100.0).round() / 100.0), [3.25, 2.25, 1.75, 2.75]);
-    assert!(!Incline::sticking().slides() && Incline::sliding().slides());
-}
-
-#[test]
-fn pyramids_feel_their_known_friction() {
-    let quarter = std::f64::consts::FRAC_PI_4;
-    assert!((inscribed_pyramid_felt(quarter) - 0.5_f64.sqrt()).abs() < 1e-15 && (box_pyramid_felt(quarter) - 2.0_f64.sqrt()).abs() < 1e-15);
-    // By search over the corners of each section.
-    for degrees in 0..90 {
-        let heading = f64::from(degrees).to_radians();
-        let felt = |corners: &[[f64; 2]]| corners.iter().map(|[x, y]| x * heading.cos() + y * heading.sin()).fold(0.0, larger);
-        assert!((felt(&[[1.0, 0.0], [0.0, 1.0]]) - inscribed_pyramid_felt(heading)).abs() < 1e-15);
-        assert!((felt(&[[1.0, 1.0], [1.0, -1.0]]) - box_pyramid_felt(heading)).abs() < 1e-15);
-    }
-}
+use featherbench_scenes::{Fit, SoftContact, block_step_felt};
 
 /// The inverse mass of a contact by vectors and a matrix inverse, where the law has products and Cramer's rule.
 #[test]

@@ -102,17 +102,6 @@ fn inverse_dynamics_leaves_the_free_joint_without_force() {
     }
 }
 
-/// The loads of a stack from the top down, where `loads` sums from each box up.
-#[test]
-fn loads_grow_downwards() {
-    let stack = BoxStack { top: 100.0, ..BoxStack::default() };
-    let mut carried = 0.0;
-    for (k, load) in stack.loads().iter().enumerate().rev() {
-        carried += 9.81 * if k == 4 { 100.0 } else { 1.0 };
-        assert!((load - carried).abs() < 1e-11, "{k}");
-    }
-}
-
 fn pair(height: f64, turn: UnitQuaternion<f64>) -> Vec<featherbench_scenes::Touch> {
     let cube = |name: &str, half: f64, z: f64| {
         let mut body = Body::new(name, 1.0, 1.0, [0.0, 0.0, z]);

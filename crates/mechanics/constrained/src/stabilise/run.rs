@@ -84,11 +84,6 @@ impl Run {
         largest(self.drift.iter().map(|drift| drift.position))
     }
 
-    /// The largest |φ̇| of all steps.
-    pub fn velocity_drift(&self) -> f64 {
-        largest(self.drift.iter().map(|drift| drift.velocity))
-    }
-
     /// The largest change of the energy since the beginning, J.
     pub fn energy_drift(&self) -> f64 {
         let first = self.drift.first().map_or(0.0, |drift| drift.energy);

@@ -35,14 +35,6 @@ impl Default for Admm {
 }
 
 impl Admm {
-    /// The ρ that the solver uses for a problem.
-    ///
-    /// # Errors
-    /// [`Unsupported`] as for [`Solver::solve`].
-    pub fn penalty(&self, problem: &Problem) -> Result<f64, Unsupported> {
-        self.chosen(&Standard::new(problem, self.name(), false)?)
-    }
-
     fn chosen(&self, standard: &Standard) -> Result<f64, Unsupported> {
         if let Some(rho) = self.rho {
             positive(self.name(), "rho", rho)?;

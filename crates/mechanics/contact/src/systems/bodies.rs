@@ -192,10 +192,4 @@ impl RockingBlock {
         let (b, h) = (self.half_width, self.half_height);
         1.0 - 1.5 * b * b / (b * b + h * h)
     }
-
-    /// The least μ with which the landing corner does not slip: its impulses are m ω h (1 − r) along and m ω b (1 + r) upwards.
-    pub fn least_friction(&self) -> f64 {
-        let r = self.ratio();
-        self.half_height * (1.0 - r) / (self.half_width * (1.0 + r))
-    }
 }

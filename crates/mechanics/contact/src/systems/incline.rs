@@ -78,17 +78,6 @@ impl Incline {
         Problem::from_mechanism("incline", Level::Impulse, vec![Contact::new("point", friction)], mechanism)
     }
 
-    /// The friction that a point feels which slides along `heading` = 45° (pyramids) or any heading (round): μ, μ/√2 or √2 μ.
-    /// None for an ellipse, where the point leaves its heading.
-    pub fn felt_friction(&self) -> Option<f64> {
-        match self.section {
-            Section::Round => Some(self.friction),
-            Section::Elliptic(_) => None,
-            Section::Inscribed => Some(self.friction * std::f64::consts::FRAC_1_SQRT_2),
-            Section::Box => Some(self.friction * std::f64::consts::SQRT_2),
-        }
-    }
-
     /// The speed downhill after the step with the felt friction μ: max(v + h g (sin θ − μ cos θ), 0).
     pub fn speed_after(&self, felt: f64) -> f64 {
         let speed = self.speed + self.duration * self.gravity * (self.angle.sin() - felt * self.angle.cos());

@@ -159,12 +159,6 @@ impl Default for Rod {
 }
 
 impl Rod {
-    /// p m = 1 + 3 cos θ (cos θ − μ sin θ): below zero, a normal force pulls the tip down while it slides.
-    pub fn coefficient(&self) -> f64 {
-        let (sine, cosine) = self.angle.sin_cos();
-        1.0 + 3.0 * cosine * (cosine - self.friction * sine)
-    }
-
     /// The question: the tip's speed along the ground after 20 ms over that at the start. An impact without collision stops it at once. The
     /// second measure is the height of the tip: it must not be below the ground.
     pub fn question(&self) -> Question {
