@@ -14,4 +14,4 @@ mod text;
 pub mod urdf;
 
 pub use export::{ExportError, Loss, OnLoss, Reason};
-pub use text::{Place, TextError};
+pub use text::{FileError, Place, TextError};

@@ -24,6 +24,47 @@ impl fmt::Display for Place {
     }
 }
 
+/// A file that cannot be read or written: the place, and why.
+#[derive(Debug)]
+pub struct FileError<P> {
+    /// The file, and the position where it is known.
+    pub place: Place,
+    /// What is wrong.
+    pub problem: Box<P>,
+}
+
+impl<P> FileError<P> {
+    pub(crate) fn new(file: impl Into<String>, position: Option<(usize, usize)>, problem: impl Into<P>) -> Self {
+        Self { place: Place { file: file.into(), position }, problem: Box::new(problem.into()) }
+    }
+}
+
+impl<P: fmt::Display> fmt::Display for FileError<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.problem)
+    }
+}
+
+impl<P: std::error::Error> std::error::Error for FileError<P> {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.problem.source()
+    }
+}
+
+/// The document of an XML text. Entities are off, and the parser keeps its own stack.
+pub(crate) fn xml(text: &str) -> Result<roxmltree::Document<'_>, roxmltree::Error> {
+    // More nodes than any robot has; each costs some hundred bytes.
+    let options = roxmltree::ParsingOptions { allow_dtd: false, nodes_limit: 1_000_000, ..roxmltree::ParsingOptions::default() };
+    roxmltree::Document::parse_with_options(text, options)
+}
+
+/// What the parser of XML found, without its place; and line and column.
+pub(crate) fn of_parser(error: &roxmltree::Error) -> (String, (usize, usize)) {
+    let (place, message) = (error.pos(), error.to_string());
+    let message = message.strip_suffix(&format!(" at {place}")).unwrap_or(&message).to_owned();
+    (message, (place.row as usize, place.col as usize))
+}
+
 /// Why a file is not text that can be read.
 #[derive(Debug, Error)]
 pub enum TextError {

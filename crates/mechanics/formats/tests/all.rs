@@ -9,6 +9,7 @@ mod residuals;
 mod robots;
 #[path = "../../robots/tests/share.rs"]
 mod share;
+mod support;
 mod uncertain;
 mod urdf_errors;
 mod urdf_export;

@@ -1,6 +1,7 @@
 //! Reading MJCF: what our writer writes comes back, other ways to say the same make the same robot, and every bad file is named.
 //! MuJoCo's own reading of real files is compared in `python/tests/test_mjcf.py`.
 
+use crate::support::{Change, assert_named};
 use featherbench_formats::mjcf::{self, MjcfProblem};
 use featherbench_formats::{OnLoss, neutral};
 use featherbench_model::{Description, JointType};
@@ -186,7 +187,7 @@ fn bad_files_are_named() {
   </worldbody>
 </mujoco>"#;
     assert!(mjcf::import(good, "f.xml").is_ok());
-    let cases: &[(&str, &str, &[&str])] = &[
+    let changes: &[Change<'_>] = &[
         ("</mujoco>", "", &["f.xml:", "not well-formed XML"]),
         ("<mujoco model=\"m\">", "<!DOCTYPE m><mujoco model=\"m\">", &["f.xml:1:1", "document type"]),
         ("<worldbody>", "<include file=\"a.xml\"/><worldbody>", &["f.xml:3:3", "<include>", "gen mjcf"]),
@@ -217,12 +218,7 @@ fn bad_files_are_named() {
         ("angle=\"radian\"", "settotalmass=\"3\"", &["f.xml:2:3", "settotalmass"]),
         ("angle=\"radian\"", "boundmass=\"x\"", &["f.xml:2:3", "boundmass=\"x\" of the compiler is not a number"]),
     ];
-    for (from, to, due) in cases {
-        let text = good.replacen(from, to, 1);
-        assert_ne!(&text, good, "{from}");
-        let error = mjcf::import(&text, "f.xml").map(|_| ()).expect_err(&text).to_string();
-        assert!(due.iter().all(|words| error.contains(words)), "{to}: {error}; due {due:?}");
-    }
+    assert_named(good, changes, |text| mjcf::import(text, "f.xml").map(|_| ()).expect_err(text).to_string());
     let error = mjcf::import("<robot/>", "f.xml").unwrap_err();
     assert!(matches!(*error.problem, MjcfProblem::NotMujoco { .. }), "{error}");
     assert!(mjcf::import("", "f.xml").unwrap_err().to_string().contains("is empty"));

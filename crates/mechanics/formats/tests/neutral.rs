@@ -1,43 +1,15 @@
 //! The neutral file: exact round trips, and errors that name the place.
 
 use crate::share::one_of;
+use crate::support::{Change, assert_named, assert_round_trip, edited, edits, refused};
 use featherbench_formats::neutral::{self, NeutralProblem};
-use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
+use featherbench_model::{BodyDescription, Description, Frame, JointDescription, Malformed, Placement, Provenance};
 use featherbench_robots::{Base, Family, Joints, Kind, Mix, Tree};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 fn generate(spec: &str) -> Description {
     Family::parse(spec).and_then(|family| family.generate()).unwrap_or_else(|error| panic!("{spec}: {error}"))
-}
-
-/// All numbers of a description as bits, so that −0 and 0 differ.
-fn bits(robot: &Description) -> Vec<u64> {
-    let placement = |p: &Placement| p.rotation.into_iter().chain(p.translation).collect::<Vec<f64>>();
-    let mut numbers = robot.gravity.to_vec();
-    for body in &robot.bodies {
-        let joint = &body.joint;
-        numbers.push(body.mass);
-        numbers.extend(
-            body.com.into_iter().chain(body.inertia).chain(joint.kind.axis().unwrap_or_default()).chain(placement(&joint.placement)),
-        );
-        if let JointType::Helical { pitch, .. } = joint.kind {
-            numbers.push(pitch);
-        }
-        for list in [&joint.armature, &joint.damping, &joint.friction, &joint.lower, &joint.upper, &joint.velocity, &joint.effort] {
-            numbers.extend(list);
-        }
-    }
-    numbers.extend(robot.frames.iter().flat_map(|frame| placement(&frame.placement)));
-    numbers.into_iter().map(f64::to_bits).collect()
-}
-
-fn assert_round_trip(robot: &Description) {
-    let text = neutral::to_string(robot).unwrap_or_else(|error| panic!("{}: {error}", robot.name));
-    let again = neutral::parse(&text, "robot.json").unwrap_or_else(|error| panic!("{error}\n{text}"));
-    assert_eq!(&again, robot);
-    assert_eq!(bits(&again), bits(robot));
-    assert_eq!(neutral::to_string(&again).as_ref(), Ok(&text), "the same bytes for the same robot");
 }
 
 #[test]
@@ -142,7 +114,7 @@ const GOOD: &str = r#"{"format":1,"name":"r","gravity":[0,0,-9.81],
 fn bad_files_are_named() {
     assert!(neutral::parse(GOOD, "good.json").is_ok());
     assert!(neutral::parse(&format!("\u{feff}{GOOD}\n"), "good.json").is_ok(), "a byte-order mark is no harm");
-    let cases: &[(&str, &str, &[&str])] = &[
+    let changes: &[Change<'_>] = &[
         (r#""format":1"#, r#""format":2"#, &["f.json:1:2: format 2 is not known", "\"format\": 1"]),
         (r#""format":1"#, r#""format":"1""#, &["format \"1\" is not known"]),
         (r#""format":1,"#, "", &["missing field `format`"]),
@@ -176,17 +148,11 @@ fn bad_files_are_named() {
         ("\n ]}", "\n ]", &["f.json:6:2: this is not valid JSON: EOF"]),
         ("\n ]}", "\n ]} {}", &["f.json:6:5: this is not valid JSON: trailing characters"]),
     ];
-    for (from, to, parts) in cases {
-        assert!(GOOD.contains(from), "{from}");
-        let error = neutral::parse(&GOOD.replacen(from, to, 1), "f.json").expect_err(to).to_string();
-        for part in *parts {
-            assert!(error.contains(part), "{to}\n  {error}\n  lacks {part}");
-        }
-    }
+    assert_named(GOOD, changes, refused);
     for (text, part) in
         [("", "is empty"), (" \n", "is empty"), ("[]", "invalid"), ("null", "invalid type: null"), ("\u{0}\u{1}", "not valid JSON")]
     {
-        let error = neutral::parse(text, "f.json").expect_err(text).to_string();
+        let error = refused(text);
         assert!(error.starts_with("f.json") && error.contains(part), "{error}");
     }
 }
@@ -240,22 +206,8 @@ proptest! {
 
     /// A file with bytes changed, removed or doubled is read or gives an error, never a panic.
     #[test]
-    fn mutated_files_never_panic(edits in proptest::collection::vec((any::<proptest::sample::Index>(), any::<proptest::sample::Index>(), 0..4, any::<char>()), 1..6)) {
-        let mut text: Vec<char> = GOOD.chars().collect();
-        for (at, to, kind, with) in edits {
-            if text.is_empty() {
-                break;
-            }
-            let (at, to) = (at.index(text.len()), to.index(text.len()));
-            match kind {
-                0 => text[at] = with,
-                1 => text.truncate(at),
-                2 => { text.drain(at.min(to)..at.max(to)); }
-                _ => { let copy = text[at.min(to)..at.max(to)].to_vec(); text.splice(at..at, copy); }
-            }
-        }
-        let text: String = text.into_iter().collect();
-        if let Err(error) = neutral::parse(&text, "mutated.json") {
+    fn mutated_files_never_panic(edits in edits(6)) {
+        if let Err(error) = neutral::parse(&edited(GOOD, edits, usize::MAX), "mutated.json") {
             prop_assert!(error.to_string().starts_with("mutated.json"));
         }
     }

@@ -1,12 +1,8 @@
 //! Residuals in files: exact round trips, the canonical form, errors that name the place, and exports that say what they leave out.
 
+use crate::support::{assert_round_trip, chain, placed, refused};
 use featherbench_formats::{OnLoss, Reason, mjcf, neutral, urdf};
 use featherbench_model::{DescribedResidual, Description, JointType, ResidualLaw};
-use featherbench_robots::Family;
-
-fn chain() -> Description {
-    Family::parse("chain:n=4,layout=spatial").and_then(|family| family.generate()).expect("a family")
-}
 
 /// A residual of every law.
 fn every() -> Vec<DescribedResidual> {
@@ -42,11 +38,9 @@ fn every() -> Vec<DescribedResidual> {
 
 #[test]
 fn every_law_round_trips() {
-    let robot = Description { residuals: every(), ..chain() };
+    let robot = Description { residuals: every(), ..chain(4) };
+    assert_round_trip(&robot);
     let text = neutral::to_string(&robot).unwrap();
-    let again = neutral::parse(&text, "robot.json").unwrap_or_else(|error| panic!("{error}\n{text}"));
-    assert_eq!(again, robot);
-    assert_eq!(neutral::to_string(&again).as_ref(), Ok(&text), "the same bytes for the same robot");
     assert!(text.contains(r#""law":{"type":"viscous","coefficient":[0.30000000000000004,-0.0]}"#), "{text}");
     assert!(!text.contains("\"velocity\":[]"), "an empty list is not written");
 }
@@ -54,9 +48,9 @@ fn every_law_round_trips() {
 /// Oracles compute with the rigid bodies, whose content hash does not change.
 #[test]
 fn the_line_for_oracles_is_that_of_the_rigid_bodies() {
-    let robot = Description { residuals: every(), ..chain() };
-    assert_eq!(neutral::to_line(&robot), neutral::to_line(&chain()));
-    assert!(!neutral::to_string(&chain()).unwrap().contains("residuals"));
+    let robot = Description { residuals: every(), ..chain(4) };
+    assert_eq!(neutral::to_line(&robot), neutral::to_line(&chain(4)));
+    assert!(!neutral::to_string(&chain(4)).unwrap().contains("residuals"));
 }
 
 /// The committed robots with residuals are what this version writes.
@@ -74,7 +68,7 @@ fn committed_robots_are_written_so() {
 /// Bodies in another order, and a payload on a flange that is fixed: the canonical form names the moving bodies, and turns the payload with it.
 #[test]
 fn the_canonical_form_keeps_their_meaning() {
-    let mut robot = chain();
+    let mut robot = chain(4);
     let last = robot.bodies.len();
     let mut flange = robot.bodies[3].clone();
     (flange.name, flange.parent, flange.joint.kind) = ("flange".into(), Some(3), JointType::Fixed);
@@ -91,7 +85,7 @@ fn the_canonical_form_keeps_their_meaning() {
     assert_eq!(*inertia, [2.0, 0.0, 0.0, 1.0, 0.0, 3.0]);
 
     // Children first: the residual of a body stays with it.
-    let mut turned = chain();
+    let mut turned = chain(4);
     turned.bodies.reverse();
     turned.bodies.iter_mut().for_each(|body| body.parent = body.parent.map(|parent| 3 - parent));
     turned.residuals =
@@ -112,7 +106,7 @@ const GOOD: &str = r#"{"format":1,"name":"r","gravity":[0,0,-9.81],
 
 #[test]
 fn bad_residuals_are_named_by_file_line_and_field() {
-    let good = GOOD.replace(":P", r#":{"rotation":[1,0,0,0,1,0,0,0,1],"translation":[0,0,0]}"#);
+    let good = placed(GOOD);
     assert_eq!(neutral::parse(&good, "good.json").unwrap().residuals.len(), 2);
     let viscous = r#""bodies":[1],"law":{"type":"viscous","coefficient":[0.5]}"#;
     let with = |bodies: &str, law: &str| format!(r#""bodies":{bodies},"law":{{{law}}}"#);
@@ -150,23 +144,21 @@ fn bad_residuals_are_named_by_file_line_and_field() {
         (with("[1,2]", r#""type":"linear","velocity":[1,2,3]"#), &["law.velocity has 3 numbers; 16 are due for the 4 dofs"]),
     ];
     for (change, parts) in cases {
-        let error = neutral::parse(&good.replace(viscous, change), "f.json").expect_err(change).to_string();
+        let error = refused(&good.replace(viscous, change));
         assert!(parts.iter().all(|part| error.contains(part)), "{change}\n{error}");
     }
     let twice = good.replace("\"drive\"", "\"grease\"");
-    assert!(
-        neutral::parse(&twice, "f.json").unwrap_err().to_string().contains("residuals[1] 'grease': another residual has the same name")
-    );
+    assert!(refused(&twice).contains("residuals[1] 'grease': another residual has the same name"));
     let armature =
         good.replace(viscous, &with("[1]", series)).replace(r#"{"name":"drive","bodies":[1],"law":{"type":"lag","time":[0.1]}}"#, "");
     let armature = armature.replace("}},\n  ]}", "}}]}").replace(r#""axis":[0,1,0],"#, r#""axis":[0,1,0],"armature":[0.1],"#);
-    let error = neutral::parse(&armature, "f.json").unwrap_err().to_string();
+    let error = refused(&armature);
     assert!(error.contains("has armature, and law.motor holds"), "{error}");
 }
 
 #[test]
 fn exports_say_that_they_leave_residuals_out() {
-    let robot = Description { residuals: every(), gravity: [0.0, 0.0, -9.81], ..chain() };
+    let robot = Description { residuals: every(), ..chain(4) };
     let (_, of_urdf) = urdf::to_string(&robot, OnLoss::LeaveOut).unwrap();
     let (_, of_mjcf) = mjcf::to_string(&robot, OnLoss::LeaveOut).unwrap();
     for losses in [of_urdf, of_mjcf] {

@@ -1,14 +1,10 @@
 //! Uncertain parameters in files: exact round trips, errors that name the place, and exports that say what they leave out.
 
+use crate::support::{Change, assert_named, assert_round_trip, chain, placed, refused};
 use featherbench_formats::{OnLoss, Reason, mjcf, neutral, urdf};
 use featherbench_model::{Acts, Correlation, Description, Distribution, Target, TargetField, Uncertain, UncertainVariable};
-use featherbench_robots::Family;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-
-fn chain() -> Description {
-    Family::parse("chain:n=4,layout=spatial").and_then(|family| family.generate()).expect("a family")
-}
 
 fn variable(k: usize, distribution: Distribution, acts: Acts, field: TargetField) -> UncertainVariable {
     UncertainVariable { name: format!("a \"{k}\""), distribution, acts, on: vec![Target { body: k % 4, field }] }
@@ -35,24 +31,17 @@ fn every() -> Uncertain {
     Uncertain { variables, correlations }
 }
 
-fn assert_round_trip(robot: &Description) {
-    let text = neutral::to_string(robot).unwrap_or_else(|error| panic!("{error}"));
-    let again = neutral::parse(&text, "robot.json").unwrap_or_else(|error| panic!("{error}\n{text}"));
-    assert_eq!(&again, robot);
-    assert_eq!(neutral::to_string(&again).as_ref(), Ok(&text), "the same bytes for the same robot");
-}
-
 #[test]
 fn every_field_and_distribution_round_trips() {
-    assert_round_trip(&Description { uncertain: every(), ..chain() });
+    assert_round_trip(&Description { uncertain: every(), ..chain(4) });
 }
 
 /// Oracles compute with the nominal robot, whose content hash does not change.
 #[test]
 fn the_line_for_oracles_is_that_of_the_nominal_robot() {
-    let uncertain = Description { uncertain: every(), ..chain() };
-    assert_eq!(neutral::to_line(&uncertain), neutral::to_line(&chain()));
-    assert!(!neutral::to_string(&chain()).unwrap().contains("uncertain"));
+    let uncertain = Description { uncertain: every(), ..chain(4) };
+    assert_eq!(neutral::to_line(&uncertain), neutral::to_line(&chain(4)));
+    assert!(!neutral::to_string(&chain(4)).unwrap().contains("uncertain"));
 }
 
 const GOOD: &str = r#"{"format":1,"name":"r","gravity":[0,0,-9.81],
@@ -67,18 +56,18 @@ const GOOD: &str = r#"{"format":1,"name":"r","gravity":[0,0,-9.81],
 
 #[test]
 fn bad_variables_are_named_by_file_line_and_field() {
-    let good = GOOD.replace(":P", r#":{"rotation":[1,0,0,0,1,0,0,0,1],"translation":[0,0,0]}"#);
+    let good = placed(GOOD);
     assert_eq!(neutral::parse(&good, "good.json").unwrap().uncertain.variables.len(), 2);
     let uniform = r#"{"type":"uniform","low":0.8,"high":1.2}"#;
-    let cases: &[(&str, &str, &[&str])] = &[
+    let changes: &[Change<'_>] = &[
         (
             uniform,
             r#"{"type":"normal","mean":1,"deviation":0.1}"#,
             &["f.json:7:11: uncertain.variables[0] 'm': a normal variable cannot be the mass of body 1", "no mean", "truncated_normal"],
         ),
-        (uniform, r#"{"type":"cauchy"}"#, &["uncertain.variables[0].distribution", "'cauchy' is unknown; choose one of uniform"]),
-        (uniform, r#"{"type":"uniform","low":0.8}"#, &["has no 'high'; it needs low, high"]),
-        (uniform, r#"{"type":"uniform","low":0.8,"high":1.2,"mean":1}"#, &["has 'mean', which such a one has not"]),
+        (uniform, r#"{"type":"cauchy"}"#, &["uncertain.variables[0].distribution", "unknown variant `cauchy`, expected one of `uniform`"]),
+        (uniform, r#"{"type":"uniform","low":0.8}"#, &["missing field `high`"]),
+        (uniform, r#"{"type":"uniform","low":0.8,"high":1.2,"mean":1}"#, &["unknown field `mean`, expected `low` or `high`"]),
         (uniform, r#"{"type":"uniform","low":0.8,"high":1.2,"shape":1}"#, &["unknown field `shape`"]),
         (uniform, r#"{"type":"uniform","low":1.8,"high":1.2}"#, &["the lower bound 1.8 is not below"]),
         (uniform, r#"{"type":"uniform","low":0,"high":1.2}"#, &["the mass of body 1 must stay above zero"]),
@@ -103,14 +92,7 @@ fn bad_variables_are_named_by_file_line_and_field() {
         (r#""second":1"#, r#""second":0"#, &["'m' is correlated with itself"]),
         (r#""second":1"#, r#""second":5"#, &["there are 2 variables"]),
     ];
-    for (from, to, parts) in cases {
-        assert!(good.contains(from), "{from}");
-        let error = neutral::parse(&good.replacen(from, to, 1), "f.json").expect_err(to).to_string();
-        assert!(error.starts_with("f.json"), "{error}");
-        for part in *parts {
-            assert!(error.contains(part), "{error}\n  lacks {part}");
-        }
-    }
+    assert_named(&good, changes, refused);
 }
 
 /// Three pairs that no variables have: 1 − 3·0.81 + 2·(−0.729) is negative.
@@ -122,13 +104,13 @@ fn correlations_that_cannot_be_are_refused() {
         Correlation { first: 1, second: 2, value: 0.9 },
         Correlation { first: 0, second: 2, value: -0.9 },
     ];
-    let error = Description { uncertain, ..chain() }.validate().unwrap_err().to_string();
+    let error = Description { uncertain, ..chain(4) }.validate().unwrap_err().to_string();
     assert!(error.contains("not positive definite"), "{error}");
 }
 
 #[test]
 fn exports_say_that_distributions_are_left_out() {
-    let robot = Description { uncertain: every(), gravity: [0.0, 0.0, -9.81], ..chain() };
+    let robot = Description { uncertain: every(), ..chain(4) };
     let (_, of_urdf) = urdf::to_string(&robot, OnLoss::LeaveOut).unwrap();
     let (_, of_mjcf) = mjcf::to_string(&robot, OnLoss::LeaveOut).unwrap();
     for losses in [of_urdf, of_mjcf] {
@@ -156,7 +138,7 @@ proptest! {
         uncertain.variables.push(variable(body, distribution, Acts::Value, field));
         uncertain.variables[7].name = "last".into();
         uncertain.correlations.push(Correlation { first: body, second: 7, value });
-        let robot = Description { uncertain, ..chain() };
+        let robot = Description { uncertain, ..chain(4) };
         if robot.validate().is_ok() {
             assert_round_trip(&robot);
         } else {

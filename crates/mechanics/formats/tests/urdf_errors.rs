@@ -1,6 +1,7 @@
 //! URDF: every bad file gives an error that names the position and the element.
 
 use crate::share::one_of;
+use crate::support::{Change, assert_named, edited, edits};
 use featherbench_formats::urdf::{self, Base, Options, UrdfProblem};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -35,7 +36,7 @@ fn refused(text: &str, options: &Options) -> String {
 #[test]
 fn bad_files_are_named() {
     assert!(urdf::import(GOOD, "f.urdf", &Options::default()).is_ok());
-    let cases: &[(&str, &str, &[&str])] = &[
+    let changes: &[Change<'_>] = &[
         // XML
         ("</robot>", "", &["f.urdf:", "not well-formed XML"]),
         ("<link name=\"base\"/>", "<link name=\"base\">", &["f.urdf:21:1", "not well-formed XML", "robot"]),
@@ -117,13 +118,7 @@ fn bad_files_are_named() {
         (" iyz=\"0\" izz=\"0.08\"", "", &["f.urdf:8:7: <inertia> of link 'arm' has no attribute 'iyz'"]),
         ("<link name=\"base\"/>", "", &["joint 'shoulder' names 'base' as its parent"]),
     ];
-    for (from, to, parts) in cases {
-        assert!(GOOD.contains(from), "{from}");
-        let error = refused(&GOOD.replacen(from, to, 1), &Options::default());
-        for part in *parts {
-            assert!(error.contains(part), "{to}\n  {error}\n  lacks {part}");
-        }
-    }
+    assert_named(GOOD, changes, |text| refused(text, &Options::default()));
     let plain: &[(&str, &str)] = &[
         ("", "f.urdf: the file is empty"),
         (" \n\t", "f.urdf: the file is empty"),
@@ -223,26 +218,8 @@ proptest! {
 
     /// A file with characters changed, removed or doubled is imported or gives an error, never a panic. The result is canonical.
     #[test]
-    fn mutated_files_never_panic(
-        edits in proptest::collection::vec((any::<proptest::sample::Index>(), any::<proptest::sample::Index>(), 0..5, any::<char>()), 1..6),
-        allow in any::<[bool; 3]>(),
-    ) {
-        let mut text: Vec<char> = GOOD.chars().collect();
-        for (at, to, kind, with) in edits {
-            if text.is_empty() {
-                break;
-            }
-            let (at, to) = (at.index(text.len()), to.index(text.len()));
-            let (from, to) = (at.min(to), at.max(to).min(at.min(to) + 60));
-            match kind {
-                0 => text[at] = with,
-                1 => text[at] = "0123456789-.e\"<>/ "[..].chars().nth(with as usize % 18).unwrap_or('0'),
-                2 => { text.drain(from..to); }
-                3 => { let copy = text[from..to].to_vec(); text.splice(from..from, copy); }
-                _ => text.swap(from, to),
-            }
-        }
-        let text: String = text.into_iter().collect();
+    fn mutated_files_never_panic(edits in edits(6), allow in any::<[bool; 3]>()) {
+        let text = edited(GOOD, edits, 60);
         let base = if allow[0] { Base::Floating } else { Base::Fixed };
         match urdf::import(&text, "mutated.urdf", &Options { base, allow_massless: allow[1], independent_mimics: allow[2] }) {
             Ok((robot, _)) => prop_assert!(robot.canonical().is_ok_and(|again| again == robot)),

@@ -2,11 +2,11 @@
 
 use crate::robots;
 use crate::share::one_of;
-
+use crate::support::chain;
 use featherbench_formats::urdf::{self, Options};
 use featherbench_formats::{ExportError, Loss, OnLoss, Reason, neutral};
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement};
-use featherbench_robots::Family;
+use featherbench_spatial::largest;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::path::Path;
@@ -54,12 +54,7 @@ fn assert_same(read: &Description, expected: &Description) -> (usize, usize) {
         level.bodies.iter_mut().map(|body| &mut body.joint.placement).chain(level.frames.iter_mut().map(|frame| &mut frame.placement));
     let wanted = expected.bodies.iter().map(|body| &body.joint.placement).chain(expected.frames.iter().map(|frame| &frame.placement));
     for (placement, wanted) in pairs.zip(wanted) {
-        let error = placement
-            .rotation
-            .iter()
-            .zip(&wanted.rotation)
-            .map(|(a, b)| (a - b).abs())
-            .fold(0.0, |worst, x| if x > worst || x.is_nan() { x } else { worst });
+        let error = largest(placement.rotation.iter().zip(&wanted.rotation).map(|(a, b)| a - b));
         assert!(error <= 8.0 * f64::EPSILON, "{}: {error:e}", read.name);
         exact = (exact.0 + usize::from(error == 0.0), exact.1 + 1);
         placement.rotation = wanted.rotation;
@@ -160,8 +155,7 @@ fn what_urdf_lacks_is_refused_by_name() {
 fn files_are_written_whole_or_not_at_all() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("robot.urdf");
-    let mut robot = Family::parse("chain:n=3").and_then(|family| family.generate()).expect("a chain");
-    robot.gravity = [0.0, 0.0, -9.81];
+    let mut robot = chain(3);
     urdf::write(&robot, &path, OnLoss::Refuse).expect("written");
     let text = std::fs::read_to_string(&path).expect("there");
     assert_eq!(urdf::read(&path, &OPTIONS).expect("readable").0.bodies, robot.bodies);

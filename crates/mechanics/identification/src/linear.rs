@@ -135,9 +135,6 @@ impl Rows {
     }
 
     /// The rows of one state: `nv` × unknowns.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when an argument does not fit the robot.
     pub fn at(&mut self, linear: &LinearModel, q: &[f64], v: &[f64], a: &[f64]) -> Result<&DMatrix<f64>, DimensionError> {
         self.regressor.torque(&linear.model, q, v, a, &mut self.matrix)?;
         self.block.fill(0.0);

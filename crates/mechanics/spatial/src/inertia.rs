@@ -1,5 +1,6 @@
 //! Rigid-body and articulated-body inertias.
 
+use crate::operators::operators;
 use crate::{Force, Lift, Mat3, Motion, Real, Sym3, Transform, Vec3};
 use std::ops::{Add, AddAssign};
 
@@ -125,23 +126,17 @@ impl<T: Real> AddAssign for CentralInertia<T> {
     }
 }
 
-impl<T: Real> Add for RigidBodyInertia<T> {
-    type Output = Self;
+operators! {
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn add(self, other: Self) -> Self {
+    <T: Real> RigidBodyInertia<T>;
+    Add: add(self, other: Self) -> Self {
         Self {
             mass: self.mass + other.mass,
             first_moment: self.first_moment + other.first_moment,
             rotational: self.rotational + other.rotational,
         }
     }
-}
-
-impl<T: Real> AddAssign for RigidBodyInertia<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
+    ; AddAssign add_assign +
 }
 
 /// An articulated-body inertia `[[I, H], [Hᵀ, M]]`: a symmetric 6×6 matrix from motions to forces (the book, section 7.1).
@@ -227,21 +222,15 @@ impl<T: Real> ArticulatedInertia<T> {
     }
 }
 
-impl<T: Real> Add for ArticulatedInertia<T> {
-    type Output = Self;
+operators! {
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn add(self, other: Self) -> Self {
+    <T: Real> ArticulatedInertia<T>;
+    Add: add(self, other: Self) -> Self {
         Self {
             rotational: self.rotational + other.rotational,
             coupling: self.coupling + other.coupling,
             translational: self.translational + other.translational,
         }
     }
-}
-
-impl<T: Real> AddAssign for ArticulatedInertia<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
+    ; AddAssign add_assign +
 }

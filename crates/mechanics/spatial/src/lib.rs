@@ -12,6 +12,7 @@
 mod exponential;
 mod inertia;
 mod linear;
+mod operators;
 mod order;
 pub mod peak;
 mod scalar;

@@ -1,5 +1,6 @@
 //! Three-dimensional vectors and matrices, the parts of spatial quantities.
 
+use crate::operators::operators;
 use crate::{Lift, Real};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
@@ -93,50 +94,14 @@ impl<T: Real> Vec3<T> {
     }
 }
 
-impl<T: Real> Add for Vec3<T> {
-    type Output = Self;
+operators! {
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn add(self, other: Self) -> Self {
-        Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
-    }
-}
-
-impl<T: Real> Sub for Vec3<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn sub(self, other: Self) -> Self {
-        Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
-    }
-}
-
-impl<T: Real> Neg for Vec3<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn neg(self) -> Self {
-        Self::new(-self.x, -self.y, -self.z)
-    }
-}
-
-impl<T: Real> Mul<T> for Vec3<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn mul(self, factor: T) -> Self {
-        Self::new(self.x * factor, self.y * factor, self.z * factor)
-    }
-}
-
-impl<T: Real> AddAssign for Vec3<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<T: Real> SubAssign for Vec3<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
-    }
+    <T: Real> Vec3<T>;
+    Add: add(self, other: Self) -> Self { Self::new(self.x + other.x, self.y + other.y, self.z + other.z) }
+    Sub: sub(self, other: Self) -> Self { Self::new(self.x - other.x, self.y - other.y, self.z - other.z) }
+    Neg: neg(self) -> Self { Self::new(-self.x, -self.y, -self.z) }
+    Mul<T>: mul(self, factor: T) -> Self { Self::new(self.x * factor, self.y * factor, self.z * factor) }
+    ; AddAssign add_assign +, SubAssign sub_assign -
 }
 
 /// A row of `M R`, R the rotation about z by the angle with this sine and cosine.
@@ -237,36 +202,15 @@ impl<T: Real> Mat3<T> {
     }
 }
 
-impl<T: Real> Mul<Vec3<T>> for Mat3<T> {
-    type Output = Vec3<T>;
+operators! {
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn mul(self, v: Vec3<T>) -> Vec3<T> {
-        Vec3::new(self.x.dot(v), self.y.dot(v), self.z.dot(v))
-    }
-}
-
-impl<T: Real> Mul for Mat3<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn mul(self, other: Self) -> Self {
+    <T: Real> Mat3<T>;
+    Mul<Vec3<T>>: mul(self, v: Vec3<T>) -> Vec3<T> { Vec3::new(self.x.dot(v), self.y.dot(v), self.z.dot(v)) }
+    Mul: mul(self, other: Self) -> Self {
         Self::from_rows(other.transpose_mul(self.x), other.transpose_mul(self.y), other.transpose_mul(self.z))
     }
-}
-
-impl<T: Real> Add for Mat3<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn add(self, other: Self) -> Self {
-        Self::from_rows(self.x + other.x, self.y + other.y, self.z + other.z)
-    }
-}
-
-impl<T: Real> Sub for Mat3<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn sub(self, other: Self) -> Self {
-        Self::from_rows(self.x - other.x, self.y - other.y, self.z - other.z)
-    }
+    Add: add(self, other: Self) -> Self { Self::from_rows(self.x + other.x, self.y + other.y, self.z + other.z) }
+    Sub: sub(self, other: Self) -> Self { Self::from_rows(self.x - other.x, self.y - other.y, self.z - other.z) }
 }
 
 /// A symmetric 3×3 matrix, six numbers in the order of the description file.
@@ -393,30 +337,20 @@ impl<T: Real> Sym3<T> {
     }
 }
 
-impl<T: Real> Mul<Vec3<T>> for Sym3<T> {
-    type Output = Vec3<T>;
+operators! {
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn mul(self, v: Vec3<T>) -> Vec3<T> {
+    <T: Real> Sym3<T>;
+    Mul<Vec3<T>>: mul(self, v: Vec3<T>) -> Vec3<T> {
         Vec3::new(
             self.xx.mul_add(v.x, self.xy.mul_add(v.y, self.xz * v.z)),
             self.xy.mul_add(v.x, self.yy.mul_add(v.y, self.yz * v.z)),
             self.xz.mul_add(v.x, self.yz.mul_add(v.y, self.zz * v.z)),
         )
     }
-}
-
-impl<T: Real> Add for Sym3<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn add(self, o: Self) -> Self {
+    Add: add(self, o: Self) -> Self {
         Self { xx: self.xx + o.xx, xy: self.xy + o.xy, xz: self.xz + o.xz, yy: self.yy + o.yy, yz: self.yz + o.yz, zz: self.zz + o.zz }
     }
-}
-
-impl<T: Real> Sub for Sym3<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn sub(self, o: Self) -> Self {
+    Sub: sub(self, o: Self) -> Self {
         Self { xx: self.xx - o.xx, xy: self.xy - o.xy, xz: self.xz - o.xz, yy: self.yy - o.yy, yz: self.yz - o.yz, zz: self.zz - o.zz }
     }
 }

@@ -1,5 +1,6 @@
 //! Spatial motion and force vectors.
 
+use crate::operators::operators;
 use crate::{Lift, Real, Vec3};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
@@ -86,50 +87,14 @@ macro_rules! spatial_vector {
             }
         }
 
-        impl<T: Real> Add for $name<T> {
-            type Output = Self;
+        operators! {
             #[inline(always)]
-            fn add(self, other: Self) -> Self {
-                Self::new(self.ang + other.ang, self.lin + other.lin)
-            }
-        }
-
-        impl<T: Real> Sub for $name<T> {
-            type Output = Self;
-            #[inline(always)]
-            fn sub(self, other: Self) -> Self {
-                Self::new(self.ang - other.ang, self.lin - other.lin)
-            }
-        }
-
-        impl<T: Real> Neg for $name<T> {
-            type Output = Self;
-            #[inline(always)]
-            fn neg(self) -> Self {
-                Self::new(-self.ang, -self.lin)
-            }
-        }
-
-        impl<T: Real> Mul<T> for $name<T> {
-            type Output = Self;
-            #[inline(always)]
-            fn mul(self, factor: T) -> Self {
-                Self::new(self.ang * factor, self.lin * factor)
-            }
-        }
-
-        impl<T: Real> AddAssign for $name<T> {
-            #[inline(always)]
-            fn add_assign(&mut self, other: Self) {
-                *self = *self + other;
-            }
-        }
-
-        impl<T: Real> SubAssign for $name<T> {
-            #[inline(always)]
-            fn sub_assign(&mut self, other: Self) {
-                *self = *self - other;
-            }
+            <T: Real> $name<T>;
+            Add: add(self, other: Self) -> Self { Self::new(self.ang + other.ang, self.lin + other.lin) }
+            Sub: sub(self, other: Self) -> Self { Self::new(self.ang - other.ang, self.lin - other.lin) }
+            Neg: neg(self) -> Self { Self::new(-self.ang, -self.lin) }
+            Mul<T>: mul(self, factor: T) -> Self { Self::new(self.ang * factor, self.lin * factor) }
+            ; AddAssign add_assign +, SubAssign sub_assign -
         }
     };
 }

@@ -11,6 +11,7 @@
 //! Units: SI. The lesson's T has c = l and its V has c = l/2: no body has both.
 
 use crate::algebra::{Algebra, AlgebraError, Expression};
+use crate::claim::Failure;
 use crate::lagrange::Equations;
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Malformed, Model, Placement};
 use featherbench_spatial::Real;
@@ -186,6 +187,11 @@ impl Arm {
     /// [`Malformed`] if a number is not finite or a mass is negative.
     pub fn model(&self) -> Result<Option<Model<f64>>, Malformed> {
         self.description().map(|description| Model::build(&description)).transpose()
+    }
+
+    /// The compiled model of links that a body has.
+    pub(crate) fn body(&self) -> Result<Model<f64>, Failure> {
+        self.model()?.ok_or_else(|| Failure::of("no body has the lesson's links; take rods or tip masses"))
     }
 }
 

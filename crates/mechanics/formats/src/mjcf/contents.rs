@@ -1,11 +1,9 @@
 //! What an MJCF file holds that engines' parsers are known to refuse. MuJoCo itself reads the robot.
 
-use roxmltree::{Document, Node, ParsingOptions};
+use roxmltree::Node;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// More nodes than any robot has; each costs some hundred bytes.
-const MOST_NODES: u32 = 1_000_000;
 /// More files than any robot includes. An include of itself ends here.
 const MOST_FILES: usize = 100;
 
@@ -44,8 +42,7 @@ pub fn contents(path: &Path) -> Contents {
 impl Contents {
     /// Adds what one text holds; returns the files that it includes.
     fn add(&mut self, text: &str) -> Vec<PathBuf> {
-        let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-        let Ok(document) = Document::parse_with_options(text, options) else { return Vec::new() };
+        let Ok(document) = crate::text::xml(text) else { return Vec::new() };
         let root = document.root_element();
         self.named |= root.has_tag_name("mujoco") && root.has_attribute("model");
         let mut included = Vec::new();

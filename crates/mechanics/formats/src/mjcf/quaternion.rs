@@ -1,6 +1,7 @@
 //! Quaternions: the rotation of an MJCF quaternion, and the inverse.
 
 use featherbench_model::Placement;
+use featherbench_spatial::largest;
 
 /// The rotation of a quaternion (w, x, y, z) of any length, row-major. It is operation by operation the formula of the MuJoCo oracle for
 /// numbers that MuJoCo imported (`turned` in `oracles/featherbench_oracles/reading.py`).
@@ -31,9 +32,7 @@ fn read(q: [f64; 4]) -> [f64; 9] {
 /// So a second round trip changes nothing.
 pub(super) fn quaternion(r: &[f64; 9]) -> ([f64; 4], f64) {
     let near = estimate(r);
-    let error = |q: &[f64; 4]| {
-        r.iter().zip(read(*q)).map(|(a, b)| (a - b).abs()).fold(0.0, |worst, x| if x > worst || x.is_nan() { x } else { worst })
-    };
+    let error = |q: &[f64; 4]| largest(r.iter().zip(read(*q)).map(|(a, b)| a - b));
     let on_grids = GRIDS.into_iter().map(|grid| on_grid(near, grid));
     let exact = on_grids.chain(neighbours(near, last_place)).find(|q| error(q) == 0.0);
     let q = exact.unwrap_or_else(|| {

@@ -184,8 +184,6 @@ fn losses(robot: &Description, carried: &[Vec<Item>]) -> Vec<Loss> {
     losses.extend(export::deforming(robot));
     losses.extend(equality::losses(robot, &|body| row(robot, carried, body).len() == 1));
     losses.extend(export::residuals(robot));
-    let uncertain = robot.uncertain.variables.iter().map(|variable| &variable.name);
-    losses.extend(uncertain.map(|name| Loss { about: format!("the uncertain variable '{name}'"), reason: Reason::Uncertain }));
     losses
 }
 

@@ -1,6 +1,6 @@
 //! Reading and writing the section `continua`: slender bodies that deform.
 
-use super::read::{BodyIndex, PlacementFields};
+use super::fields::{BodyIndex, PlacementFields};
 use super::write::{Writer, index, quoted};
 use featherbench_model::{Continuum, ContinuumElement, ContinuumMaterial, ContinuumSection, ContinuumStrain, ContinuumTip};
 use serde::Deserialize;
@@ -13,7 +13,8 @@ pub(super) struct ContinuumFields {
     placement: PlacementFields,
     length: f64,
     material: MaterialFields,
-    section: Section,
+    #[serde(with = "Section")]
+    section: ContinuumSection,
     element: Element,
     count: usize,
     strains: Vec<Strain>,
@@ -45,25 +46,14 @@ struct Element(ContinuumElement);
 #[serde(try_from = "String")]
 struct Strain(ContinuumStrain);
 
-/// A section whose fields fit its type.
+/// A section with the fields of its type, and no others.
 #[derive(Deserialize)]
-#[serde(try_from = "SectionFields")]
-struct Section(ContinuumSection);
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SectionFields {
-    #[serde(rename = "type")]
-    kind: String,
-    radius: Option<f64>,
-    inner: Option<f64>,
-    outer: Option<f64>,
-    width: Option<f64>,
-    height: Option<f64>,
-    area: Option<f64>,
-    second_moments: Option<[f64; 2]>,
-    torsion: Option<f64>,
-    shear_factor: Option<f64>,
+#[serde(remote = "ContinuumSection", tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+enum Section {
+    Circle { radius: f64 },
+    Tube { inner: f64, outer: f64 },
+    Rectangle { width: f64, height: f64 },
+    General { area: f64, second_moments: [f64; 2], torsion: f64, shear_factor: f64 },
 }
 
 impl TryFrom<String> for Element {
@@ -84,47 +74,6 @@ impl TryFrom<String> for Strain {
     }
 }
 
-impl TryFrom<SectionFields> for Section {
-    type Error = String;
-    fn try_from(fields: SectionFields) -> Result<Self, String> {
-        let SectionFields { kind, radius, inner, outer, width, height, area, second_moments, torsion, shear_factor } = fields;
-        let own: &[&str] = match kind.as_str() {
-            "circle" => &["radius"],
-            "tube" => &["inner", "outer"],
-            "rectangle" => &["width", "height"],
-            "general" => &["area", "second_moments", "torsion", "shear_factor"],
-            other => return Err(format!("the section has the unknown type '{other}'; choose one of circle, tube, rectangle, general")),
-        };
-        let given = [
-            ("radius", radius.is_some()),
-            ("inner", inner.is_some()),
-            ("outer", outer.is_some()),
-            ("width", width.is_some()),
-            ("height", height.is_some()),
-            ("area", area.is_some()),
-            ("second_moments", second_moments.is_some()),
-            ("torsion", torsion.is_some()),
-            ("shear_factor", shear_factor.is_some()),
-        ];
-        if let Some((field, _)) = given.into_iter().find(|(field, given)| *given && !own.contains(field)) {
-            return Err(format!("a section of type {kind} has '{field}', which such a section has not; remove it"));
-        }
-        let missing = |field: &str| format!("a section of type {kind} has no '{field}'; it needs {}", own.join(", "));
-        let need = |field: &str, value: Option<f64>| value.ok_or_else(|| missing(field));
-        Ok(Self(match kind.as_str() {
-            "circle" => ContinuumSection::Circle { radius: need("radius", radius)? },
-            "tube" => ContinuumSection::Tube { inner: need("inner", inner)?, outer: need("outer", outer)? },
-            "rectangle" => ContinuumSection::Rectangle { width: need("width", width)?, height: need("height", height)? },
-            _ => ContinuumSection::General {
-                area: need("area", area)?,
-                second_moments: second_moments.ok_or_else(|| missing("second_moments"))?,
-                torsion: need("torsion", torsion)?,
-                shear_factor: need("shear_factor", shear_factor)?,
-            },
-        }))
-    }
-}
-
 impl From<ContinuumFields> for Continuum {
     fn from(fields: ContinuumFields) -> Self {
         let ContinuumFields { name, body, placement, length, material, section, element, count, strains, tip } = fields;
@@ -135,7 +84,7 @@ impl From<ContinuumFields> for Continuum {
             placement: placement.into(),
             length,
             material: ContinuumMaterial { young, poisson, density, damping },
-            section: section.0,
+            section,
             element: element.0,
             count,
             strains: strains.into_iter().map(|strain| strain.0).collect(),

@@ -1,30 +1,12 @@
 //! What can be wrong with a description file.
 
-use crate::{Place, TextError};
+use crate::{FileError, TextError};
 use featherbench_model::Malformed;
 use std::fmt;
 use thiserror::Error;
 
 /// A description file that cannot be read or written: the place, and why.
-#[derive(Debug)]
-pub struct NeutralError {
-    /// The file, and the position where it is known.
-    pub place: Place,
-    /// What is wrong.
-    pub problem: Box<NeutralProblem>,
-}
-
-impl fmt::Display for NeutralError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.place, self.problem)
-    }
-}
-
-impl std::error::Error for NeutralError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        self.problem.source()
-    }
-}
+pub type NeutralError = FileError<NeutralProblem>;
 
 /// What is wrong with a description file.
 #[derive(Debug, Error)]

@@ -1,6 +1,6 @@
 //! Reading the section `loops`: each type has its own fields, and no others.
 
-use super::read::{BodyIndex, PlacementFields};
+use super::fields::{BodyIndex, PlacementFields};
 use featherbench_model::{Loop, LoopEnd, LoopKind, LoopMotion};
 use serde::Deserialize;
 

@@ -21,6 +21,7 @@
 
 mod continua;
 mod error;
+mod fields;
 mod loops;
 mod read;
 mod residuals;

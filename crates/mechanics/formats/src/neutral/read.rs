@@ -1,13 +1,14 @@
 //! Reading: serde mirrors of the description; what does not fit them is an error.
 
 use super::continua::ContinuumFields;
+use super::fields::{BodyIndex, PlacementFields};
 use super::loops::Tie;
 use super::residuals::Entry;
 use super::uncertain::Section;
 use super::{FORMAT, LIMIT, NeutralError, NeutralProblem};
-use crate::{Place, text};
+use crate::text;
 use featherbench_model::{
-    BodyDescription, Continuum, DescribedResidual, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance,
+    BodyDescription, Continuum, DescribedResidual, Description, Frame, JointDescription, JointType, Malformed, Provenance,
 };
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -25,7 +26,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<Description, NeutralError> {
     let file = path.display().to_string();
     match text::read(path, LIMIT) {
         Ok(text) => parse(&text, &file),
-        Err(error) => Err(NeutralError { place: Place { file, position: None }, problem: Box::new(error.into()) }),
+        Err(error) => Err(NeutralError::new(file, None, error)),
     }
 }
 
@@ -34,7 +35,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<Description, NeutralError> {
 /// # Errors
 /// [`NeutralError`], naming file, line, column and field.
 pub fn parse(text: &str, file: &str) -> Result<Description, NeutralError> {
-    let error = |position, problem| NeutralError { place: Place { file: file.to_owned(), position }, problem: Box::new(problem) };
+    let error = |position, problem: NeutralProblem| NeutralError::new(file, position, problem);
     let text = text::check(text, LIMIT).map_err(|problem| error(None, problem.into()))?;
 
     let mut deserializer = serde_json::Deserializer::from_str(text);
@@ -141,21 +142,6 @@ struct BodyFields {
     joint: Joint,
 }
 
-/// An index of a body, or −1 for the world.
-#[derive(Clone, Copy, Deserialize)]
-#[serde(try_from = "i64")]
-pub(super) struct BodyIndex(pub Option<usize>);
-
-impl TryFrom<i64> for BodyIndex {
-    type Error = String;
-    fn try_from(index: i64) -> Result<Self, String> {
-        match index {
-            -1 => Ok(Self(None)),
-            index => usize::try_from(index).map(|index| Self(Some(index))).map_err(|_| format!("{index} is no body; the world is -1")),
-        }
-    }
-}
-
 /// A joint whose axis and pitch fit its type.
 #[derive(Deserialize)]
 #[serde(try_from = "JointFields")]
@@ -184,13 +170,6 @@ struct JointFields {
     velocity: Vec<f64>,
     #[serde(default)]
     effort: Vec<f64>,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct PlacementFields {
-    rotation: [f64; 9],
-    translation: [f64; 3],
 }
 
 #[derive(Deserialize)]
@@ -244,12 +223,6 @@ impl Document {
 impl From<BodyFields> for Body {
     fn from(BodyFields { name, mass, com, inertia, parent, joint }: BodyFields) -> Self {
         Self(BodyDescription { name, parent: parent.0, mass, com, inertia, joint: joint.0 })
-    }
-}
-
-impl From<PlacementFields> for Placement {
-    fn from(PlacementFields { rotation, translation }: PlacementFields) -> Self {
-        Self { rotation, translation }
     }
 }
 

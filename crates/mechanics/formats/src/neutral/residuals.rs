@@ -10,11 +10,12 @@ use serde::Deserialize;
 pub(super) struct Entry {
     name: String,
     bodies: Vec<usize>,
-    law: Law,
+    #[serde(with = "Law")]
+    law: ResidualLaw,
 }
 
 #[derive(Deserialize)]
-#[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+#[serde(remote = "ResidualLaw", tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 enum Law {
     Viscous {
         coefficient: Vec<f64>,
@@ -68,24 +69,7 @@ enum Law {
 
 impl From<Entry> for DescribedResidual {
     fn from(Entry { name, bodies, law }: Entry) -> Self {
-        Self { name, bodies, law: law.into() }
-    }
-}
-
-impl From<Law> for ResidualLaw {
-    fn from(law: Law) -> Self {
-        match law {
-            Law::Viscous { coefficient } => Self::Viscous { coefficient },
-            Law::Coulomb { force, width } => Self::Coulomb { force, width },
-            Law::Dry { force } => Self::Dry { force },
-            Law::Stribeck { coulomb, stiction, speed, viscous, width } => Self::Stribeck { coulomb, stiction, speed, viscous, width },
-            Law::Spring { stiffness, damping, rest } => Self::Spring { stiffness, damping, rest },
-            Law::SeriesElastic { stiffness, damping, motor } => Self::SeriesElastic { stiffness, damping, motor },
-            Law::Lag { time } => Self::Lag { time },
-            Law::Delay { periods } => Self::Delay { periods },
-            Law::Payload { mass, com, inertia } => Self::Payload { mass, com, inertia },
-            Law::Linear { position, velocity, acceleration, constant } => Self::Linear { position, velocity, acceleration, constant },
-        }
+        Self { name, bodies, law }
     }
 }
 

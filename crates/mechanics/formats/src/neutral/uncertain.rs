@@ -16,32 +16,29 @@ pub(super) struct Section {
 #[serde(deny_unknown_fields)]
 struct Variable {
     name: String,
-    distribution: Known,
-    acts: As,
+    #[serde(with = "Known")]
+    distribution: Distribution,
+    #[serde(with = "As")]
+    acts: Acts,
     on: Vec<Number>,
 }
 
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Deserialize)]
+#[serde(remote = "Acts", rename_all = "snake_case")]
 enum As {
     Value,
     Factor,
 }
 
-/// A distribution whose numbers fit its type.
+/// A distribution with the numbers of its type, and no others.
 #[derive(Deserialize)]
-#[serde(try_from = "DistributionFields")]
-struct Known(Distribution);
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct DistributionFields {
-    #[serde(rename = "type")]
-    kind: String,
-    low: Option<f64>,
-    high: Option<f64>,
-    mean: Option<f64>,
-    deviation: Option<f64>,
+#[serde(remote = "Distribution", tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+enum Known {
+    Uniform { low: f64, high: f64 },
+    Lognormal { mean: f64, deviation: f64 },
+    Gamma { mean: f64, deviation: f64 },
+    Normal { mean: f64, deviation: f64 },
+    TruncatedNormal { mean: f64, deviation: f64, low: f64, high: f64 },
 }
 
 /// A number of the robot whose index fits its field.
@@ -63,42 +60,6 @@ struct Pair {
     first: usize,
     second: usize,
     value: f64,
-}
-
-impl TryFrom<DistributionFields> for Known {
-    type Error = String;
-    fn try_from(fields: DistributionFields) -> Result<Self, String> {
-        let DistributionFields { kind, low, high, mean, deviation } = fields;
-        let own: &[&str] = match kind.as_str() {
-            "uniform" => &["low", "high"],
-            "lognormal" | "gamma" | "normal" => &["mean", "deviation"],
-            "truncated_normal" => &["mean", "deviation", "low", "high"],
-            other => {
-                let known = "uniform, lognormal, gamma, normal, truncated_normal";
-                return Err(format!("the distribution '{other}' is unknown; choose one of {known}"));
-            }
-        };
-        let given = [("low", low), ("high", high), ("mean", mean), ("deviation", deviation)];
-        if let Some((field, _)) = given.into_iter().find(|(field, value)| value.is_some() && !own.contains(field)) {
-            return Err(format!("the distribution '{kind}' has '{field}', which such a one has not; it has {}", own.join(", ")));
-        }
-        let number = |name: &str| {
-            let found = given.into_iter().find(|(field, _)| *field == name).and_then(|(_, value)| value);
-            found.ok_or_else(|| format!("the distribution '{kind}' has no '{name}'; it needs {}", own.join(", ")))
-        };
-        Ok(Self(match kind.as_str() {
-            "uniform" => Distribution::Uniform { low: number("low")?, high: number("high")? },
-            "lognormal" => Distribution::Lognormal { mean: number("mean")?, deviation: number("deviation")? },
-            "gamma" => Distribution::Gamma { mean: number("mean")?, deviation: number("deviation")? },
-            "normal" => Distribution::Normal { mean: number("mean")?, deviation: number("deviation")? },
-            _ => Distribution::TruncatedNormal {
-                mean: number("mean")?,
-                deviation: number("deviation")?,
-                low: number("low")?,
-                high: number("high")?,
-            },
-        }))
-    }
 }
 
 impl TryFrom<NumberFields> for Number {
@@ -129,11 +90,8 @@ impl From<Section> for Uncertain {
     fn from(section: Section) -> Self {
         let variable = |Variable { name, distribution, acts, on }: Variable| UncertainVariable {
             name,
-            distribution: distribution.0,
-            acts: match acts {
-                As::Value => Acts::Value,
-                As::Factor => Acts::Factor,
-            },
+            distribution,
+            acts,
             on: on.into_iter().map(|number| number.0).collect(),
         };
         let pair = |Pair { first, second, value }: Pair| Correlation { first, second, value };

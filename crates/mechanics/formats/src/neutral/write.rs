@@ -1,7 +1,7 @@
 //! Writing: one layout, the same bytes for the same description.
 
 use super::{NeutralError, NeutralProblem};
-use crate::{Place, text};
+use crate::text;
 use featherbench_model::{
     Acts, BodyDescription, Correlation, Description, Frame, JointDescription, JointType, Loop, LoopEnd, LoopKind, Malformed, Placement,
     Provenance, Uncertain, UncertainVariable,
@@ -16,7 +16,7 @@ use std::path::Path;
 /// [`NeutralError`] when the description is malformed or the file cannot be written.
 pub fn write(description: &Description, path: impl AsRef<Path>) -> Result<(), NeutralError> {
     let path = path.as_ref();
-    let error = |problem| NeutralError { place: Place { file: path.display().to_string(), position: None }, problem: Box::new(problem) };
+    let error = |problem: NeutralProblem| NeutralError::new(path.display().to_string(), None, problem);
     description.validate().map_err(|malformed| error(malformed.into()))?;
     text::write_by(path, |file| stream(description, file)).map_err(|io| error(NeutralProblem::Write(io)))
 }
@@ -26,7 +26,7 @@ pub fn write(description: &Description, path: impl AsRef<Path>) -> Result<(), Ne
 /// # Errors
 /// [`NeutralError`] when the description is malformed or the output does not take the text. `name` names the output in it.
 pub fn write_to(description: &Description, output: &mut dyn io::Write, name: &str) -> Result<(), NeutralError> {
-    let error = |problem| NeutralError { place: Place { file: name.to_owned(), position: None }, problem: Box::new(problem) };
+    let error = |problem: NeutralProblem| NeutralError::new(name, None, problem);
     description.validate().map_err(|malformed| error(malformed.into()))?;
     stream(description, output).map_err(|io| error(NeutralProblem::Write(io)))
 }

@@ -1,6 +1,6 @@
 //! Roll, pitch and yaw: the rotation of URDF angles, and the inverse.
 
-use featherbench_spatial::{DoubleDouble, Real};
+use featherbench_spatial::{DoubleDouble, Real, largest};
 use std::f64::consts::TAU;
 
 /// Rz(yaw)·Ry(pitch)·Rx(roll), row-major: the doubles nearest to that rotation, which then needs no normalising.
@@ -34,7 +34,7 @@ pub(super) fn angles(r: &[f64; 9]) -> [f64; 3] {
 
 /// The largest difference of two rotations' entries.
 pub(super) fn distance(a: &[f64; 9], b: &[f64; 9]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, |worst, x| if x > worst || x.is_nan() { x } else { worst })
+    largest(a.iter().zip(b).map(|(a, b)| a - b))
 }
 
 /// The angles that give exactly this rotation, or else the candidate that comes nearest.

@@ -5,7 +5,7 @@ use super::angles::rotation;
 use super::error::{At, NoteAt, UrdfProblem};
 use super::xml::Element;
 use featherbench_model::Placement;
-use featherbench_spatial::{DoubleDouble, Mat3, Real, Sym3, Vec3};
+use featherbench_spatial::{DoubleDouble, Mat3, Real, Sym3, Vec3, largest};
 use roxmltree::{Document, Node};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -140,7 +140,7 @@ fn note_mimics_of_nothing(joints: &[Joint], notes: &mut Vec<NoteAt>) {
         let Some(Mimicry { of, place, .. }) = &joint.mimics else { continue };
         if !index.contains_key(of.as_str()) {
             let text = format!("joint '{}' mimics '{of}', which is not there", joint.name);
-            notes.push(NoteAt { offset: *place, text, warning: None });
+            notes.push(NoteAt::new(*place, text));
         }
         let follow = |k: &usize| joints[*k].mimics.as_ref().and_then(|mimic| index.get(mimic.of.as_str()).copied());
         let behind: Vec<usize> = std::iter::successors(follow(&k), follow).take(joints.len()).collect();
@@ -150,7 +150,7 @@ fn note_mimics_of_nothing(joints: &[Joint], notes: &mut Vec<NoteAt>) {
         if circle.iter().all(|&at| at >= k) {
             let names = std::iter::once(&k).chain(circle).map(|&at| format!("'{}'", joints[at].name)).collect::<Vec<_>>().join(" → ");
             let text = format!("the joints {names} mimic each other in a circle: nothing drives them");
-            notes.push(NoteAt { offset: *place, text, warning: None });
+            notes.push(NoteAt::new(*place, text));
         }
     }
 }
@@ -188,7 +188,7 @@ fn note_what_is_not_read(root: Node, notes: &mut Vec<NoteAt>) {
     }
     for (what, (count, offset)) in ignored {
         let times = if count == 1 { String::new() } else { format!(" ({count} times)") };
-        notes.push(NoteAt { offset, text: format!("{what} is not read{times}"), warning: None });
+        notes.push(NoteAt::new(offset, format!("{what} is not read{times}")));
     }
 }
 
@@ -236,7 +236,7 @@ impl Joint {
             let place = mimic.offset();
             let line = if options.independent_mimics {
                 let text = format!("joint '{name}' mimics '{of}' and is read as a joint of its own");
-                notes.push(NoteAt { offset: place, text, warning: None });
+                notes.push(NoteAt::new(place, text));
                 None
             } else {
                 Some([mimic.optional_number("offset")?.unwrap_or(0.0), mimic.optional_number("multiplier")?.unwrap_or(1.0)])
@@ -277,7 +277,7 @@ impl Joint {
         if !matches!(self.kind, Kind::Revolute(_) | Kind::Prismatic(_)) {
             if let Some(found) = limit.or(dynamics).filter(|_| !matches!(self.kind, Kind::Fixed)) {
                 let text = format!("limits and friction of joint '{}' are not read: it has more than one degree of freedom", self.name);
-                notes.push(NoteAt { offset: found.offset(), text, warning: None });
+                notes.push(NoteAt::new(found.offset(), text));
             }
             return Ok(());
         }
@@ -290,20 +290,12 @@ impl Joint {
                 self.lower.extend(side("lower", lower));
                 self.upper.extend(side("upper", upper));
             } else if !continuous {
-                notes.push(NoteAt {
-                    offset: limit.offset(),
-                    text: format!("joint '{}' gives no position limits and has none", self.name),
-                    warning: None,
-                });
+                notes.push(NoteAt::new(limit.offset(), format!("joint '{}' gives no position limits and has none", self.name)));
             }
             self.velocity.extend(limit.limit("velocity")?);
             self.effort.extend(limit.limit("effort")?);
         } else if !continuous {
-            notes.push(NoteAt {
-                offset: self.offset,
-                text: format!("joint '{}' has no <limit> and is unlimited", self.name),
-                warning: None,
-            });
+            notes.push(NoteAt::new(self.offset, format!("joint '{}' has no <limit> and is unlimited", self.name)));
         }
         if let Some(dynamics) = dynamics {
             self.damping.extend(dynamics.optional_number("damping")?);
@@ -324,11 +316,7 @@ fn axis(element: Element, joint: &str, notes: &mut Vec<NoteAt>) -> Result<[f64; 
         return Err(found.problem(UrdfProblem::ZeroAxis { joint: joint.to_owned() }));
     };
     if unit != given {
-        notes.push(NoteAt {
-            offset: found.offset(),
-            text: format!("the axis of joint '{joint}' has length {length}; it is normalised"),
-            warning: None,
-        });
+        notes.push(NoteAt::new(found.offset(), format!("the axis of joint '{joint}' has length {length}; it is normalised")));
     }
     Ok(unit)
 }
@@ -336,13 +324,13 @@ fn axis(element: Element, joint: &str, notes: &mut Vec<NoteAt>) -> Result<[f64; 
 /// The direction of a vector and its length; `None` of a zero vector. An axis that a description may have keeps its bits.
 fn unit(given: [f64; 3]) -> Option<([f64; 3], f64)> {
     // Scaled first, so that squares neither overflow nor underflow.
-    let largest = given.iter().map(|x| x.abs()).fold(0.0, |largest, x| if x > largest || x.is_nan() { x } else { largest });
-    if largest == 0.0 {
+    let size = largest(given);
+    if size == 0.0 {
         return None;
     }
-    let scaled = Vec3::from_array(given.map(|x| DoubleDouble::from_f64(x) / DoubleDouble::from_f64(largest)));
+    let scaled = Vec3::from_array(given.map(|x| DoubleDouble::from_f64(x) / DoubleDouble::from_f64(size)));
     let norm = scaled.norm();
-    let length = largest * norm.to_f64();
+    let length = size * norm.to_f64();
     let unit = if (length - 1.0).abs() <= AXIS_TOLERANCE { given } else { scaled.to_array().map(|x| (x / norm).to_f64()) };
     Some((unit, length))
 }

@@ -1,30 +1,11 @@
 //! What can be wrong with a URDF file.
 
-use crate::{Place, TextError};
+use crate::{FileError, TextError};
 use featherbench_model::{Malformed, Warning};
-use std::fmt;
 use thiserror::Error;
 
 /// A URDF file that cannot be imported: the place, and why.
-#[derive(Debug)]
-pub struct UrdfError {
-    /// The file, and the position where it is known.
-    pub place: Place,
-    /// What is wrong.
-    pub problem: Box<UrdfProblem>,
-}
-
-impl fmt::Display for UrdfError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.place, self.problem)
-    }
-}
-
-impl std::error::Error for UrdfError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        self.problem.source()
-    }
-}
+pub type UrdfError = FileError<UrdfProblem>;
 
 /// What is wrong with a URDF file.
 #[derive(Debug, Error)]
@@ -215,16 +196,6 @@ pub enum UrdfProblem {
     Malformed(#[from] Malformed),
 }
 
-impl UrdfProblem {
-    /// The position, if the problem has a more exact one than its element.
-    pub(super) fn position(&self) -> Option<(usize, usize)> {
-        match self {
-            Self::Xml { position, .. } => Some(*position),
-            _ => None,
-        }
-    }
-}
-
 /// A problem and the byte offset of the element that has it.
 pub(super) struct At {
     pub offset: Option<usize>,
@@ -243,4 +214,10 @@ pub(super) struct NoteAt {
     pub offset: usize,
     pub text: String,
     pub warning: Option<Warning>,
+}
+
+impl NoteAt {
+    pub fn new(offset: usize, text: String) -> Self {
+        Self { offset, text, warning: None }
+    }
 }

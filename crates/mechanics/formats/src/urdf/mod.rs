@@ -35,7 +35,7 @@ pub use error::{UrdfError, UrdfProblem};
 pub use links::{Inertial, LinkInFile, Mimic, links, mimics};
 pub use write::{to_string, write};
 
-use crate::{Place, text};
+use crate::text;
 use featherbench_model::{Description, Warning};
 use std::fmt;
 use std::path::Path;
@@ -90,7 +90,7 @@ pub fn read(path: impl AsRef<Path>, options: &Options) -> Result<(Description, V
     let file = path.display().to_string();
     match text::read(path, LIMIT) {
         Ok(text) => import(&text, &file, options),
-        Err(error) => Err(UrdfError { place: Place { file, position: None }, problem: Box::new(error.into()) }),
+        Err(error) => Err(UrdfError::new(file, None, error)),
     }
 }
 
@@ -99,8 +99,7 @@ pub fn read(path: impl AsRef<Path>, options: &Options) -> Result<(Description, V
 /// # Errors
 /// [`UrdfError`], naming file, line, column and the link or joint.
 pub fn import(text: &str, file: &str, options: &Options) -> Result<(Description, Vec<Note>), UrdfError> {
-    let place = |position| Place { file: file.to_owned(), position };
-    let text = text::check(text, LIMIT).map_err(|problem| UrdfError { place: place(None), problem: Box::new(problem.into()) })?;
+    let text = text::check(text, LIMIT).map_err(|problem| UrdfError::new(file, None, problem))?;
     let read = || -> Result<_, error::At> {
         let document = xml::parse(text)?;
         let mut notes = Vec::new();
@@ -110,8 +109,9 @@ pub fn import(text: &str, file: &str, options: &Options) -> Result<(Description,
         Ok((description, notes))
     };
     let (description, notes) = read().map_err(|error::At { offset, problem }| {
-        let position = offset.map(|offset| text::position(text, offset)).or(problem.position());
-        UrdfError { place: place(position), problem: Box::new(problem) }
+        let of_parser = if let UrdfProblem::Xml { position, .. } = &problem { Some(*position) } else { None };
+        let position = offset.map(|offset| text::position(text, offset)).or(of_parser);
+        UrdfError::new(file, position, problem)
     })?;
     let lines = text::Lines::new(text);
     let note = |note: error::NoteAt| Note { line: lines.line(note.offset), text: note.text, warning: note.warning };

@@ -20,7 +20,7 @@ pub(super) fn assemble(robot: &Robot, options: &Options, notes: &mut Vec<NoteAt>
             let (root, name) = (&robot.links[connected.root].name, &joint.name);
             let text =
                 format!("link '{root}' has no inertia and carries the robot on the floating joint '{name}': that joint is the base's");
-            notes.push(NoteAt { offset: joint.offset, text, warning: None });
+            notes.push(NoteAt::new(joint.offset, text));
             Base::Fixed
         }
         _ => options.base,
@@ -217,7 +217,7 @@ fn check_masses(robot: &Robot, canonical: &Description, options: &Options, notes
             let (link, joint) = (body.name.clone(), body.joint.name.clone());
             return Err(UrdfProblem::Massless { link, joint, has_inertial }.at(offset));
         }
-        notes.push(NoteAt { offset, text: format!("link '{}' moves and has no mass", body.name), warning: None });
+        notes.push(NoteAt::new(offset, format!("link '{}' moves and has no mass", body.name)));
     }
     Ok(())
 }

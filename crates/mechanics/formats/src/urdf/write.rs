@@ -199,8 +199,6 @@ fn losses(robot: &Description) -> Vec<Loss> {
     }
     losses.extend(export::deforming(robot));
     losses.extend(export::residuals(robot));
-    let uncertain = robot.uncertain.variables.iter().map(|variable| &variable.name);
-    losses.extend(uncertain.map(|name| Loss { about: format!("the uncertain variable '{name}'"), reason: Reason::Uncertain }));
     losses
 }
 

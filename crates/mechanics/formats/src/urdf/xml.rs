@@ -1,15 +1,12 @@
 //! Elements and attributes, with the positions of errors in them.
 
 use super::error::{At, UrdfProblem};
-use roxmltree::{Document, Node, ParsingOptions};
+use crate::text;
+use roxmltree::{Document, Node};
 
-/// More nodes than any robot has; each costs some hundred bytes.
-const MOST_NODES: u32 = 1_000_000;
-
-/// The document of a text. Entities are off, and the parser keeps its own stack.
+/// The document of a text.
 pub(super) fn parse(text: &str) -> Result<Document<'_>, At> {
-    let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    Document::parse_with_options(text, options).map_err(|error| match error {
+    text::xml(text).map_err(|error| match error {
         roxmltree::Error::DtdDetected => UrdfProblem::DocumentType.at(text.find("<!DOCTYPE").unwrap_or(0)),
         roxmltree::Error::UnknownNamespace(prefix, place) if prefix == "xacro" => {
             let position = (place.row as usize, place.col as usize);
@@ -17,9 +14,7 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, At> {
         }
         _ if mesh(text).is_some() => UrdfProblem::AnotherKind { kind: mesh(text).unwrap_or_default() }.at(0),
         other => {
-            let (place, message) = (other.pos(), other.to_string());
-            let position = (place.row as usize, place.col as usize);
-            let message = message.strip_suffix(&format!(" at {place}")).unwrap_or(&message).to_owned();
+            let (message, position) = text::of_parser(&other);
             At { offset: None, problem: UrdfProblem::Xml { message, position } }
         }
     })

@@ -1,9 +1,8 @@
 //! Why a log is refused.
 
-use std::fmt;
-
 /// A log that cannot be used, with file and line.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{file}{}: {problem}", .line.map_or_else(String::new, |line| format!(":{line}")))]
 pub struct LogError {
     /// The file.
     pub file: String,
@@ -101,14 +100,3 @@ fn near(present: &[String]) -> String {
     let more = if present.len() > shown.len() { ", …" } else { "" };
     if shown.is_empty() { String::new() } else { format!(" (there are {}{more})", shown.join(", ")) }
 }
-
-impl fmt::Display for LogError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.line {
-            Some(line) => write!(f, "{}:{line}: {}", self.file, self.problem),
-            None => write!(f, "{}: {}", self.file, self.problem),
-        }
-    }
-}
-
-impl std::error::Error for LogError {}

@@ -1,10 +1,9 @@
 //! Balanced binary trees of dyadic links.
 
 use super::BadFamily;
-use super::parameters::{Parameters, require};
+use super::parameters::{parameters, require};
 use super::parts::{DYADIC_GRAVITY, LINK, X, Y, Z, dyadic_link};
 use featherbench_model::{Description, JointType};
-use std::fmt;
 
 /// A balanced binary tree of `2^depth − 1` revolute links, axes x, y, z cycling with the level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,20 +12,14 @@ pub struct BinaryTree {
     pub depth: u32,
 }
 
-impl Default for BinaryTree {
-    fn default() -> Self {
-        Self { depth: 6 }
-    }
-}
+parameters!(BinaryTree {
+    depth = 6, "a number of levels", "{}";
+});
 
 /// Half the distance of two siblings' joints, m.
 const ASIDE: f64 = 0.125;
 
 impl BinaryTree {
-    pub(super) fn read(parameters: &mut Parameters) -> Result<Self, BadFamily> {
-        Ok(Self { depth: parameters.take("depth", Self::default().depth, "a number of levels")? })
-    }
-
     pub(super) fn check(&self) -> Result<(), BadFamily> {
         require((1..=20).contains(&self.depth), "binary_tree", "depth", self.depth, "1 to 20")
     }
@@ -49,11 +42,5 @@ impl BinaryTree {
             }
         }
         Description { name: format!("binary-tree-{}", self.depth), gravity: DYADIC_GRAVITY, bodies, ..Description::default() }
-    }
-}
-
-impl fmt::Display for BinaryTree {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "depth={}", self.depth)
     }
 }

@@ -1,10 +1,9 @@
 //! Centipedes: a floating spine of dyadic links with two legs on each.
 
 use super::BadFamily;
-use super::parameters::{MOST_LINKS, Parameters, require};
+use super::parameters::{MOST_LINKS, parameters, require};
 use super::parts::{DYADIC_GRAVITY, LINK, X, Y, Z, dyadic_link};
 use featherbench_model::{BodyDescription, Description, JointType};
-use std::fmt;
 
 /// `segments` dyadic links in a row, the first on a free joint, and on each a left and a right leg of `leg` revolute joints:
 /// 6 + segments − 1 + 2·leg·segments dofs.
@@ -18,24 +17,15 @@ pub struct Centipede {
     pub leg: usize,
 }
 
-impl Default for Centipede {
-    fn default() -> Self {
-        Self { segments: 10, leg: 3 }
-    }
-}
+parameters!(Centipede {
+    segments = 10, "a number of links", "{}";
+    leg = 3, "a number of joints", "{}";
+});
 
 /// Where a leg stands on its segment, m from the middle plane.
 const ASIDE: f64 = 0.125;
 
 impl Centipede {
-    pub(super) fn read(parameters: &mut Parameters) -> Result<Self, BadFamily> {
-        let default = Self::default();
-        Ok(Self {
-            segments: parameters.take("segments", default.segments, "a number of links")?,
-            leg: parameters.take("leg", default.leg, "a number of joints")?,
-        })
-    }
-
     pub(super) fn check(&self) -> Result<(), BadFamily> {
         require((1..=MOST_LINKS).contains(&self.segments), "centipede", "segments", self.segments, "1 to 1000000")?;
         let most = (MOST_LINKS / self.segments - 1) / 2;
@@ -64,11 +54,5 @@ impl Centipede {
         }
         let name = format!("centipede-{}-{}", self.segments, self.leg);
         Description { name, gravity: DYADIC_GRAVITY, bodies, ..Description::default() }
-    }
-}
-
-impl fmt::Display for Centipede {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "segments={},leg={}", self.segments, self.leg)
     }
 }

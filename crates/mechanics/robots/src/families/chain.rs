@@ -1,10 +1,9 @@
 //! Chains of identical links whose every number is dyadic, so that all engines hold bit-identical models.
 
-use super::parameters::{MOST_LINKS, Parameters, require, words};
+use super::parameters::{MOST_LINKS, parameters, require, words};
 use super::parts::{DYADIC_GRAVITY, LINK, X, Y, Z, dyadic_link};
 use super::{BadFamily, Base};
 use featherbench_model::{Description, JointType};
-use std::fmt;
 
 /// The axes of a chain. (A *straight* chain is a state, q = 0, of either.)
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -33,24 +32,15 @@ pub struct Chain {
     pub base: Base,
 }
 
-impl Default for Chain {
-    fn default() -> Self {
-        Self { n: 10, layout: Layout::Planar, tip_scale: 1.0, base_offset: 0.0, base: Base::Fixed }
-    }
-}
+parameters!(Chain {
+    n = 10, "a number of links", "{}";
+    layout = Layout::Planar, Layout::WORDS, "{}";
+    tip_scale = 1.0, "a positive number", "{:?}";
+    base_offset = 0.0, "a distance in metres", "{:?}";
+    base = Base::Fixed, Base::WORDS, "{}";
+});
 
 impl Chain {
-    pub(super) fn read(parameters: &mut Parameters) -> Result<Self, BadFamily> {
-        let default = Self::default();
-        Ok(Self {
-            n: parameters.take("n", default.n, "a number of links")?,
-            layout: parameters.take("layout", default.layout, Layout::WORDS)?,
-            tip_scale: parameters.take("tip_scale", default.tip_scale, "a positive number")?,
-            base_offset: parameters.take("base_offset", default.base_offset, "a distance in metres")?,
-            base: parameters.take("base", default.base, Base::WORDS)?,
-        })
-    }
-
     pub(super) fn check(&self) -> Result<(), BadFamily> {
         require((1..=MOST_LINKS).contains(&self.n), "chain", "n", self.n, "1 to 1000000")?;
         require(self.tip_scale.is_normal() && self.tip_scale > 0.0, "chain", "tip_scale", self.tip_scale, "a positive number")?;
@@ -91,12 +81,5 @@ impl Chain {
             name += &format!("-offset{:e}", self.base_offset);
         }
         name
-    }
-}
-
-impl fmt::Display for Chain {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { n, layout, tip_scale, base_offset, base } = self;
-        write!(f, "n={n},layout={layout},tip_scale={tip_scale:?},base_offset={base_offset:?},base={base}")
     }
 }

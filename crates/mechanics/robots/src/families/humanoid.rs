@@ -2,10 +2,9 @@
 //! The waist carries two arms of seven and a head of one.
 
 use super::BadFamily;
-use super::parameters::{Parameters, require};
+use super::parameters::{parameters, require};
 use super::parts::{GRAVITY, Part, X, Y, Z, free_box, limb};
 use featherbench_model::Description;
-use std::fmt;
 
 /// The 36-dof humanoid; x forward, y left, z up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,17 +13,11 @@ pub struct Humanoid {
     pub hand_mass: f64,
 }
 
-impl Default for Humanoid {
-    fn default() -> Self {
-        Self { hand_mass: 0.5 }
-    }
-}
+parameters!(Humanoid {
+    hand_mass = 0.5, "a mass in kg", "{:?}";
+});
 
 impl Humanoid {
-    pub(super) fn read(parameters: &mut Parameters) -> Result<Self, BadFamily> {
-        Ok(Self { hand_mass: parameters.take("hand_mass", Self::default().hand_mass, "a mass in kg")? })
-    }
-
     pub(super) fn check(&self) -> Result<(), BadFamily> {
         require(self.hand_mass.is_normal() && self.hand_mass > 0.0, "humanoid", "hand_mass", self.hand_mass, "a positive mass in kg")
     }
@@ -41,12 +34,6 @@ impl Humanoid {
         let usual = self.hand_mass == Self::default().hand_mass;
         let name = if usual { "humanoid".to_owned() } else { format!("humanoid-hand{}", self.hand_mass) };
         Description { name, gravity: GRAVITY, bodies, ..Description::default() }
-    }
-}
-
-impl fmt::Display for Humanoid {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "hand_mass={:?}", self.hand_mass)
     }
 }
 

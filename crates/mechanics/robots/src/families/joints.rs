@@ -1,11 +1,10 @@
 //! Small branched trees that show one kind of joint in the middle and at the tips, on a fixed and on a free base.
 
-use super::parameters::{Parameters, words};
+use super::parameters::{parameters, words};
 use super::parts::{ARMATURE, COMMON, MOVABLE, random_body, random_kind};
-use super::{BadFamily, Base};
+use super::Base;
 use crate::Random;
 use featherbench_model::{BodyDescription, Description, JointType};
-use std::fmt;
 
 /// The joint that a [`Joints`] robot shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -86,7 +85,7 @@ words!(Shape { Branched => "branched", Single => "single" });
 
 /// A root with two branches for each kind shown. In one branch the joint is on the root, a revolute forearm on it, and the joint again at
 /// the tip. In the other branch the joint is the tip. Axes and placements are skew, inertias full, masses within a factor of 1.5.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Joints {
     /// The joint shown.
     pub kind: Kind,
@@ -98,6 +97,13 @@ pub struct Joints {
     pub armature: bool,
 }
 
+parameters!(Joints {
+    kind = Kind::Revolute, Kind::WORDS, "{}";
+    base = Base::Fixed, Base::WORDS, "{}";
+    shape = Shape::Branched, Shape::WORDS, "{}";
+    armature = false, "true or false", "{}";
+});
+
 /// Masses of the bodies, kg.
 const MASS: (f64, f64) = (0.8, 1.2);
 /// Mass of the free body that carries single joints, kg.
@@ -106,15 +112,6 @@ const HEAVY: (f64, f64) = (8.0, 12.0);
 const SEED: u64 = 1;
 
 impl Joints {
-    pub(super) fn read(parameters: &mut Parameters) -> Result<Self, BadFamily> {
-        Ok(Self {
-            kind: parameters.take("kind", Kind::default(), Kind::WORDS)?,
-            base: parameters.take("base", Base::default(), Base::WORDS)?,
-            shape: parameters.take("shape", Shape::default(), Shape::WORDS)?,
-            armature: parameters.take("armature", false, "true or false")?,
-        })
-    }
-
     pub(super) fn describe(&self) -> Description {
         let shown = self.kind.shown();
         let (mut bodies, suffix) = match self.shape {
@@ -168,11 +165,5 @@ impl Joints {
             bodies.push(random_body(&mut random, (*word).to_owned(), parent, kind, MASS, false));
         }
         bodies
-    }
-}
-
-impl fmt::Display for Joints {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "kind={},base={},shape={},armature={}", self.kind, self.base, self.shape, self.armature)
     }
 }

@@ -84,3 +84,29 @@ macro_rules! words {
     };
 }
 pub(super) use words;
+
+/// The parameters of a family, each with its default, what it takes and how it is written: `Default`, `read`, and the `Display` that is
+/// read back.
+macro_rules! parameters {
+    ($family:ident { $($key:ident = $default:expr, $expected:expr, $format:literal;)+ }) => {
+        impl Default for $family {
+            fn default() -> Self {
+                Self { $($key: $default),+ }
+            }
+        }
+
+        impl $family {
+            pub(super) fn read(given: &mut super::Parameters) -> Result<Self, super::BadFamily> {
+                let default = Self::default();
+                Ok(Self { $($key: given.take(stringify!($key), default.$key, $expected)?),+ })
+            }
+        }
+
+        impl std::fmt::Display for $family {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(&[$(format!(concat!(stringify!($key), "=", $format), self.$key)),+].join(","))
+            }
+        }
+    };
+}
+pub(super) use parameters;

@@ -1,10 +1,9 @@
 //! Platforms: many arms that share one floating base, so that the mass matrix has the shape of an arrow.
 
 use super::BadFamily;
-use super::parameters::{MOST_LINKS, Parameters, require};
+use super::parameters::{MOST_LINKS, parameters, require};
 use super::parts::{DYADIC_GRAVITY, LINK, X, Y, Z, dyadic_link};
 use featherbench_model::{BodyDescription, Description, JointType};
-use std::fmt;
 
 /// A free platform that carries `robots` arms of `n` revolute dyadic links each: 6 + robots·n dofs.
 ///
@@ -18,21 +17,12 @@ pub struct Platform {
     pub n: usize,
 }
 
-impl Default for Platform {
-    fn default() -> Self {
-        Self { robots: 100, n: 7 }
-    }
-}
+parameters!(Platform {
+    robots = 100, "a number of arms", "{}";
+    n = 7, "a number of links", "{}";
+});
 
 impl Platform {
-    pub(super) fn read(parameters: &mut Parameters) -> Result<Self, BadFamily> {
-        let default = Self::default();
-        Ok(Self {
-            robots: parameters.take("robots", default.robots, "a number of arms")?,
-            n: parameters.take("n", default.n, "a number of links")?,
-        })
-    }
-
     pub(super) fn check(&self) -> Result<(), BadFamily> {
         require((1..MOST_LINKS).contains(&self.robots), "platform", "robots", self.robots, "1 to 999999")?;
         let most = (MOST_LINKS - 1) / self.robots;
@@ -57,11 +47,5 @@ impl Platform {
         }
         let name = format!("platform-{}-{}", self.robots, self.n);
         Description { name, gravity: DYADIC_GRAVITY, bodies, ..Description::default() }
-    }
-}
-
-impl fmt::Display for Platform {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "robots={},n={}", self.robots, self.n)
     }
 }

@@ -1,10 +1,9 @@
 //! Snakes: a floating chain of dyadic links whose axes alternate, as in snake robots.
 
 use super::BadFamily;
-use super::parameters::{MOST_LINKS, Parameters, require};
+use super::parameters::{MOST_LINKS, parameters, require};
 use super::parts::{DYADIC_GRAVITY, LINK, Y, Z, dyadic_link};
 use featherbench_model::{Description, JointType};
-use std::fmt;
 
 /// `n` dyadic links in a row, the first on a free joint: 6 + n − 1 dofs. The axes of the joints are z, y, z, …: yaw, pitch, yaw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,17 +12,11 @@ pub struct Snake {
     pub n: usize,
 }
 
-impl Default for Snake {
-    fn default() -> Self {
-        Self { n: 20 }
-    }
-}
+parameters!(Snake {
+    n = 20, "a number of links", "{}";
+});
 
 impl Snake {
-    pub(super) fn read(parameters: &mut Parameters) -> Result<Self, BadFamily> {
-        Ok(Self { n: parameters.take("n", Self::default().n, "a number of links")? })
-    }
-
     pub(super) fn check(&self) -> Result<(), BadFamily> {
         require((1..=MOST_LINKS).contains(&self.n), "snake", "n", self.n, "1 to 1000000")
     }
@@ -38,11 +31,5 @@ impl Snake {
         };
         let bodies = (0..self.n).map(link).collect();
         Description { name: format!("snake-{}", self.n), gravity: DYADIC_GRAVITY, bodies, ..Description::default() }
-    }
-}
-
-impl fmt::Display for Snake {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "n={}", self.n)
     }
 }

@@ -1,11 +1,10 @@
 //! Random trees with random bodies: skew axes, skew placements, full inertias.
 
-use super::parameters::{MOST_LINKS, Parameters, require, words};
+use super::parameters::{MOST_LINKS, parameters, require, words};
 use super::parts::{COMMON, MOVABLE, random_body, random_kind};
 use super::{BadFamily, Base};
 use crate::Random;
 use featherbench_model::{Description, JointType};
-use std::fmt;
 
 /// Which joints a random tree has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -62,30 +61,21 @@ pub struct Tree {
     pub base_offset: f64,
 }
 
-impl Default for Tree {
-    fn default() -> Self {
-        Self { n: 20, seed: 1, spread: 0.3, joints: Mix::Revolute, base: Base::Fixed, armature: false, tip_scale: 1.0, base_offset: 0.0 }
-    }
-}
+parameters!(Tree {
+    n = 20, "a number of bodies", "{}";
+    seed = 1, "a whole number", "{}";
+    spread = 0.3, "a probability", "{:?}";
+    joints = Mix::Revolute, Mix::WORDS, "{}";
+    base = Base::Fixed, Base::WORDS, "{}";
+    armature = false, "true or false", "{}";
+    tip_scale = 1.0, "a positive number", "{:?}";
+    base_offset = 0.0, "a distance in metres", "{:?}";
+});
 
 /// Masses of the bodies, kg.
 const MASS: (f64, f64) = (0.5, 2.0);
 
 impl Tree {
-    pub(super) fn read(parameters: &mut Parameters) -> Result<Self, BadFamily> {
-        let default = Self::default();
-        Ok(Self {
-            n: parameters.take("n", default.n, "a number of bodies")?,
-            seed: parameters.take("seed", default.seed, "a whole number")?,
-            spread: parameters.take("spread", default.spread, "a probability")?,
-            joints: parameters.take("joints", default.joints, Mix::WORDS)?,
-            base: parameters.take("base", default.base, Base::WORDS)?,
-            armature: parameters.take("armature", default.armature, "true or false")?,
-            tip_scale: parameters.take("tip_scale", default.tip_scale, "a positive number")?,
-            base_offset: parameters.take("base_offset", default.base_offset, "a distance in metres")?,
-        })
-    }
-
     pub(super) fn check(&self) -> Result<(), BadFamily> {
         require((1..=MOST_LINKS).contains(&self.n), "tree", "n", self.n, "1 to 1000000")?;
         require((0.0..=1.0).contains(&self.spread), "tree", "spread", self.spread, "a probability, 0 to 1")?;
@@ -144,13 +134,5 @@ impl Tree {
             name += &format!("-offset{:e}", self.base_offset);
         }
         name
-    }
-}
-
-impl fmt::Display for Tree {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { n, seed, spread, joints, base, armature, tip_scale, base_offset } = self;
-        write!(f, "n={n},seed={seed},spread={spread:?},joints={joints},base={base},armature={armature}")?;
-        write!(f, ",tip_scale={tip_scale:?},base_offset={base_offset:?}")
     }
 }

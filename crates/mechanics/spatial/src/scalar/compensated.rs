@@ -13,6 +13,7 @@
 
 use super::error_free::{two_product, two_sum};
 use super::{DoubleDouble, Lift, Part, Real};
+use crate::operators::operators;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// The sum `value + error`, where `error` is usually, but not always, the smaller.
@@ -130,36 +131,19 @@ impl<T: Part> Lift<T> for Compensated<T> {
     }
 }
 
-impl<T: Part> Add for Compensated<T> {
-    type Output = Self;
+operators! {
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn add(self, other: Self) -> Self {
+    <T: Part> Compensated<T>;
+    Add: add(self, other: Self) -> Self {
         let (value, error) = two_sum(self.value, other.value);
         Self { value, error: error + (self.error + other.error) }
     }
-}
-
-impl<T: Part> Sub for Compensated<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn sub(self, other: Self) -> Self {
-        self + -other
-    }
-}
-
-impl<T: Part> Mul for Compensated<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn mul(self, other: Self) -> Self {
+    Sub: sub(self, other: Self) -> Self { self + -other }
+    Mul: mul(self, other: Self) -> Self {
         let (value, error) = two_product(self.value, other.value);
         Self { value, error: T::mul_add(self.error, other.value, T::mul_add(self.value, other.error, error)) }
     }
-}
-
-impl<T: Part> Div for Compensated<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn div(self, other: Self) -> Self {
+    Div: div(self, other: Self) -> Self {
         let other = other.renormalized();
         let value = self.value / other.value;
         let (product, error) = two_product(value, other.value);
@@ -167,33 +151,6 @@ impl<T: Part> Div for Compensated<T> {
         let rest = ((self.value - product) - error) + T::mul_add(-value, other.error, self.error);
         Self { value, error: rest / other.value }
     }
-}
-
-impl<T: Part> Neg for Compensated<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn neg(self) -> Self {
-        Self { value: -self.value, error: -self.error }
-    }
-}
-
-impl<T: Part> AddAssign for Compensated<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<T: Part> SubAssign for Compensated<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
-    }
-}
-
-impl<T: Part> MulAssign for Compensated<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn mul_assign(&mut self, other: Self) {
-        *self = *self * other;
-    }
+    Neg: neg(self) -> Self { Self { value: -self.value, error: -self.error } }
+    ; AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *
 }

@@ -21,6 +21,7 @@
 use super::error_free::{fast_two_sum, two_product, two_sum};
 use super::trigonometry;
 use super::{Lift, Part, Real};
+use crate::operators::operators;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// The sum `hi + lo` of two `f64`, of which `hi` is the one nearest to the sum. With a register in place of `f64`, each lane is such a sum.
@@ -203,28 +204,14 @@ impl From<f64> for DoubleDouble {
     }
 }
 
-impl<T: Part> Add for DoubleDouble<T> {
-    type Output = Self;
+operators! {
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn add(self, other: Self) -> Self {
-        T::extended_sum(self, other)
-    }
-}
-
-impl<T: Part> Sub for DoubleDouble<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn sub(self, other: Self) -> Self {
-        self + -other
-    }
-}
-
-impl<T: Part> Mul for DoubleDouble<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn mul(self, other: Self) -> Self {
-        T::extended_product(self, other)
-    }
+    <T: Part> DoubleDouble<T>;
+    Add: add(self, other: Self) -> Self { T::extended_sum(self, other) }
+    Sub: sub(self, other: Self) -> Self { self + -other }
+    Mul: mul(self, other: Self) -> Self { T::extended_product(self, other) }
+    Neg: neg(self) -> Self { Self { hi: -self.hi, lo: -self.lo } }
+    ; AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *
 }
 
 impl Div for DoubleDouble {
@@ -235,34 +222,5 @@ impl Div for DoubleDouble {
         let product = other.scale(quotient);
         let rest = (self.hi - product.hi) + (self.lo - product.lo);
         Self::renormalized(quotient, rest / other.hi)
-    }
-}
-
-impl<T: Part> Neg for DoubleDouble<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn neg(self) -> Self {
-        Self { hi: -self.hi, lo: -self.lo }
-    }
-}
-
-impl<T: Part> AddAssign for DoubleDouble<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<T: Part> SubAssign for DoubleDouble<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
-    }
-}
-
-impl<T: Part> MulAssign for DoubleDouble<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn mul_assign(&mut self, other: Self) {
-        *self = *self * other;
     }
 }

@@ -1,6 +1,7 @@
 //! Dual numbers: a value and one directional derivative, over any scalar.
 
 use super::{DoubleDouble, Lift, Real};
+use crate::operators::operators;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// `value + derivative·ε` with ε² = 0: forward-mode differentiation in one direction.
@@ -109,30 +110,15 @@ mod inlined {
 mod called {
     use super::{Dual, Real, inlined};
 
-    #[inline(never)]
-    pub fn sum<T: Real>(a: Dual<T>, b: Dual<T>) -> Dual<T> {
-        inlined::sum(a, b)
+    macro_rules! calls {
+        ($($name:ident($($x:ident),+)),+) => {$(
+            #[inline(never)]
+            pub fn $name<T: Real>($($x: Dual<T>),+) -> Dual<T> {
+                inlined::$name($($x),+)
+            }
+        )+};
     }
-
-    #[inline(never)]
-    pub fn difference<T: Real>(a: Dual<T>, b: Dual<T>) -> Dual<T> {
-        inlined::difference(a, b)
-    }
-
-    #[inline(never)]
-    pub fn product<T: Real>(a: Dual<T>, b: Dual<T>) -> Dual<T> {
-        inlined::product(a, b)
-    }
-
-    #[inline(never)]
-    pub fn quotient<T: Real>(a: Dual<T>, b: Dual<T>) -> Dual<T> {
-        inlined::quotient(a, b)
-    }
-
-    #[inline(never)]
-    pub fn mul_add<T: Real>(a: Dual<T>, b: Dual<T>, c: Dual<T>) -> Dual<T> {
-        inlined::mul_add(a, b, c)
-    }
+    calls!(sum(a, b), difference(a, b), product(a, b), quotient(a, b), mul_add(a, b, c));
 }
 
 impl<T: Real> Lift<Dual<T>> for f64 {
@@ -142,65 +128,15 @@ impl<T: Real> Lift<Dual<T>> for f64 {
     }
 }
 
-impl<T: Real> Add for Dual<T> {
-    type Output = Self;
+operators! {
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn add(self, other: Self) -> Self {
-        if Self::COMPACT { called::sum(self, other) } else { inlined::sum(self, other) }
-    }
-}
-
-impl<T: Real> Sub for Dual<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn sub(self, other: Self) -> Self {
-        if Self::COMPACT { called::difference(self, other) } else { inlined::difference(self, other) }
-    }
-}
-
-impl<T: Real> Mul for Dual<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn mul(self, other: Self) -> Self {
-        if Self::COMPACT { called::product(self, other) } else { inlined::product(self, other) }
-    }
-}
-
-impl<T: Real> Div for Dual<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn div(self, other: Self) -> Self {
-        if Self::COMPACT { called::quotient(self, other) } else { inlined::quotient(self, other) }
-    }
-}
-
-impl<T: Real> Neg for Dual<T> {
-    type Output = Self;
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn neg(self) -> Self {
-        Self::new(-self.value, -self.derivative)
-    }
-}
-
-impl<T: Real> AddAssign for Dual<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<T: Real> SubAssign for Dual<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
-    }
-}
-
-impl<T: Real> MulAssign for Dual<T> {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn mul_assign(&mut self, other: Self) {
-        *self = *self * other;
-    }
+    <T: Real> Dual<T>;
+    Add: add(self, other: Self) -> Self { if Self::COMPACT { called::sum(self, other) } else { inlined::sum(self, other) } }
+    Sub: sub(self, other: Self) -> Self { if Self::COMPACT { called::difference(self, other) } else { inlined::difference(self, other) } }
+    Mul: mul(self, other: Self) -> Self { if Self::COMPACT { called::product(self, other) } else { inlined::product(self, other) } }
+    Div: div(self, other: Self) -> Self { if Self::COMPACT { called::quotient(self, other) } else { inlined::quotient(self, other) } }
+    Neg: neg(self) -> Self { Self::new(-self.value, -self.derivative) }
+    ; AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *
 }
 
 #[cfg(test)]

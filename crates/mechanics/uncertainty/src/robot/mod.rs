@@ -23,10 +23,8 @@ use featherbench_dynamics::{ParameterSensitivity, TreeSparse, inertial_parameter
 use featherbench_model::{Description, DimensionError, Model, TargetField};
 use featherbench_spatial::Vec3;
 use nalgebra::{DMatrix, DVector};
-use numbers::{Body, Columns, Dof, compiled, follow};
+use numbers::{Body, Columns, Dof, TEN, compiled, follow};
 
-/// Inertial parameters of a body.
-const TEN: usize = 10;
 /// Multiply-adds per body of the recursive algorithms, about: what decides between the routes.
 const RECURSIVE: usize = 350;
 

@@ -1,9 +1,11 @@
 //! The uncertain numbers of a robot: those of its bodies, of its dofs, and the affine functions that they make.
 
-use super::TEN;
 use crate::Lanes;
 use featherbench_model::{Acts, Model, TargetField};
 use featherbench_spatial::{Dual, Real, RigidBodyInertia, Sym3, Vec3};
+
+/// Inertial parameters of a body.
+pub(super) const TEN: usize = 10;
 
 /// A body that has uncertain numbers.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! Samples of a robot's dynamics, eight at once: by the columns, or by the recursive algorithms.
 
-use super::numbers::{compiled, follow};
-use super::{Quantity, RobotResponse, Route, TEN};
+use super::numbers::{TEN, compiled, follow};
+use super::{Quantity, RobotResponse, Route};
 use crate::{Lanes, Response};
 use featherbench_dynamics::{Aba, Ltdl, Rnea};
 use featherbench_model::{Model, TargetField};

@@ -21,48 +21,44 @@ pub(crate) fn first_moments(arm: &Arm) -> Result<[f64; 2], Failure> {
 }
 
 /// The lab's body.
-pub(super) fn body() -> Claim {
-    Claim {
-        id: "arm_body",
-        place: "§11",
-        title: "The body of the symbolic arm",
-        says: "T and V are those of one planar arm.",
-        right: "T needs the first moment m₂l₂ of link 2, V needs m₂l₂/2. No body has both: either masses at the tips, or rods with their own inertia.",
-        holds: Holds::No,
-        numbers: |_| {
-            let arm = Arm::default();
-            let moment = arm.masses[1] * arm.lengths[1];
-            let mut numbers = Vec::new();
-            for (links, share) in [(Links::TipMasses, 1.0), (Links::UniformRods, 0.5)] {
-                let [by_kinetic, by_potential] = first_moments(&arm.with(links))?;
-                let difference = (by_kinetic - by_potential).abs();
-                let name = |what: &str| format!("{what}, {}", links.name());
-                numbers.push(Number::new(name("first moment by T"), "kg·m", by_kinetic, share * moment));
-                numbers.push(Number::new(name("first moment by V"), "kg·m", by_potential, share * moment));
-                let [lesson_kinetic, lesson_potential] = first_moments(&arm.with(Links::Lesson))?;
-                let zero = if difference <= 1e-14 * moment { 0.0 } else { difference };
-                numbers.push(
-                    Number::new(name("first moment by T less that by V"), "kg·m", zero, 0.0)
-                        .stated(lesson_kinetic - lesson_potential, 0.5 * moment),
-                );
-            }
-            Ok(numbers)
-        },
-    }
-}
+pub(super) const BODY: Claim = Claim {
+    id: "arm_body",
+    place: "§11",
+    title: "The body of the symbolic arm",
+    says: "T and V are those of one planar arm.",
+    right: "T needs the first moment m₂l₂ of link 2, V needs m₂l₂/2. No body has both: either masses at the tips, or rods with their own inertia.",
+    holds: Holds::No,
+    numbers: |_| {
+        let arm = Arm::default();
+        let moment = arm.masses[1] * arm.lengths[1];
+        let mut numbers = Vec::new();
+        for (links, share) in [(Links::TipMasses, 1.0), (Links::UniformRods, 0.5)] {
+            let [by_kinetic, by_potential] = first_moments(&arm.with(links))?;
+            let difference = (by_kinetic - by_potential).abs();
+            let name = |what: &str| format!("{what}, {}", links.name());
+            numbers.push(Number::new(name("first moment by T"), "kg·m", by_kinetic, share * moment));
+            numbers.push(Number::new(name("first moment by V"), "kg·m", by_potential, share * moment));
+            let [lesson_kinetic, lesson_potential] = first_moments(&arm.with(Links::Lesson))?;
+            let zero = if difference <= 1e-14 * moment { 0.0 } else { difference };
+            numbers.push(
+                Number::new(name("first moment by T less that by V"), "kg·m", zero, 0.0)
+                    .stated(lesson_kinetic - lesson_potential, 0.5 * moment),
+            );
+        }
+        Ok(numbers)
+    },
+};
 
 /// The lab's accelerations.
-pub(super) fn accelerations() -> Claim {
-    Claim {
-        id: "arm_accelerations",
-        place: "§11",
-        title: "Accelerations of the symbolic arm",
-        says: "The solved equations of motion are those of the planar arm.",
-        right: "They are those of no arm. Below are the two consistent ones.",
-        holds: Holds::No,
-        numbers: |_| accelerations_of(&Arm::default()),
-    }
-}
+pub(super) const ACCELERATIONS: Claim = Claim {
+    id: "arm_accelerations",
+    place: "§11",
+    title: "Accelerations of the symbolic arm",
+    says: "The solved equations of motion are those of the planar arm.",
+    right: "They are those of no arm. Below are the two consistent ones.",
+    holds: Holds::No,
+    numbers: |_| accelerations_of(&Arm::default()),
+};
 
 pub(crate) fn accelerations_of(arm: &Arm) -> Result<Vec<Number>, Failure> {
     let by_symbols = |links: Links| -> Result<Vec<f64>, Failure> {
@@ -74,7 +70,7 @@ pub(crate) fn accelerations_of(arm: &Arm) -> Result<Vec<Number>, Failure> {
     let mut numbers = Vec::new();
     for links in [Links::TipMasses, Links::UniformRods] {
         let (found, second) = (by_symbols(links)?, by_hand(links));
-        let model = arm.with(links).model()?.ok_or_else(|| Failure::of("these links are a body"))?;
+        let model = arm.with(links).body()?;
         let kernels = forward_dynamics(&model, &arm.q, &arm.v, &arm.tau)?;
         for k in 0..2 {
             let name = format!("acceleration of joint {}, {}", k + 1, links.name());

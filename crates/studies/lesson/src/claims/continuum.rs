@@ -89,46 +89,42 @@ fn cantilever() -> Result<Vec<f64>, Failure> {
 }
 
 /// A string.
-pub(super) fn string() -> Claim {
-    Claim {
-        id: "continuum_string",
-        place: "§4",
-        title: "The equation of a continuum",
-        says: "ρ ẍ = ∂T/∂s + f is a model of a one-dimensional continuum.",
-        right: "It is a string's. With the weight as its tension it is the hanging chain, ω = (j₀ₖ/2)√(g/L).",
-        holds: Holds::Yes,
-        numbers: |_| {
-            let second = chain()?;
-            let brackets = [(2.0, 3.0), (5.0, 6.0), (8.0, 9.0)];
-            let number = |(k, (low, high)): (usize, (f64, f64))| {
-                let known = 0.5 * root(bessel, low, high);
-                Number::new(format!("frequency {} of a hanging chain over √(g/L)", k + 1), "1", known, second[k]).stated(second[k], 0.0)
-            };
-            Ok(brackets.into_iter().enumerate().map(number).collect())
-        },
-    }
-}
+pub(super) const STRING: Claim = Claim {
+    id: "continuum_string",
+    place: "§4",
+    title: "The equation of a continuum",
+    says: "ρ ẍ = ∂T/∂s + f is a model of a one-dimensional continuum.",
+    right: "It is a string's. With the weight as its tension it is the hanging chain, ω = (j₀ₖ/2)√(g/L).",
+    holds: Holds::Yes,
+    numbers: |_| {
+        let second = chain()?;
+        let brackets = [(2.0, 3.0), (5.0, 6.0), (8.0, 9.0)];
+        let number = |(k, (low, high)): (usize, (f64, f64))| {
+            let known = 0.5 * root(bessel, low, high);
+            Number::new(format!("frequency {} of a hanging chain over √(g/L)", k + 1), "1", known, second[k]).stated(second[k], 0.0)
+        };
+        Ok(brackets.into_iter().enumerate().map(number).collect())
+    },
+};
 
 /// A beam.
-pub(super) fn beam() -> Claim {
-    Claim {
-        id: "continuum_beam",
-        place: "§4",
-        title: "Bending",
-        says: "The same equation, with shape functions, is the model of soft and continuum robots.",
-        right: "It has no bending. A cantilever without tension would not come back: ω = 0. The term −EI w⁗ is missing.",
-        holds: Holds::No,
-        numbers: |_| {
-            let second = cantilever()?;
-            // cos β cosh β = −1 over cosh β, so that large β do not overflow the sign.
-            let characteristic = |beta: f64| beta.cos() + 1.0 / beta.cosh();
-            let brackets = [(1.5, 2.5), (4.0, 5.5), (7.0, 8.5)];
-            let number = |(k, (low, high)): (usize, (f64, f64))| {
-                let beta = root(characteristic, low, high);
-                let name = format!("frequency {} of a cantilever over √(EI/ρAL⁴)", k + 1);
-                Number::new(name, "1", beta * beta, second[k]).stated(0.0, -second[k])
-            };
-            Ok(brackets.into_iter().enumerate().map(number).collect())
-        },
-    }
-}
+pub(super) const BEAM: Claim = Claim {
+    id: "continuum_beam",
+    place: "§4",
+    title: "Bending",
+    says: "The same equation, with shape functions, is the model of soft and continuum robots.",
+    right: "It has no bending. A cantilever without tension would not come back: ω = 0. The term −EI w⁗ is missing.",
+    holds: Holds::No,
+    numbers: |_| {
+        let second = cantilever()?;
+        // cos β cosh β = −1 over cosh β, so that large β do not overflow the sign.
+        let characteristic = |beta: f64| beta.cos() + 1.0 / beta.cosh();
+        let brackets = [(1.5, 2.5), (4.0, 5.5), (7.0, 8.5)];
+        let number = |(k, (low, high)): (usize, (f64, f64))| {
+            let beta = root(characteristic, low, high);
+            let name = format!("frequency {} of a cantilever over √(EI/ρAL⁴)", k + 1);
+            Number::new(name, "1", beta * beta, second[k]).stated(0.0, -second[k])
+        };
+        Ok(brackets.into_iter().enumerate().map(number).collect())
+    },
+};

@@ -97,17 +97,15 @@ impl Threshold {
 }
 
 /// Problem 3.
-pub(super) fn scaled() -> Claim {
-    Claim {
-        id: "jump_scaled",
-        place: "Problem 3",
-        title: "A sensitivity at a reset",
-        says: "After x⁺ = α x⁻ the sensitivity is α times that before.",
-        right: "The state at the event is fixed, and its time moves: the factor is f(αx_i)/f(x_i). It is α only where f(αx_i) = α f(x_i).",
-        holds: Holds::InPart,
-        numbers: |_| Threshold::default().numbers(),
-    }
-}
+pub(super) const SCALED: Claim = Claim {
+    id: "jump_scaled",
+    place: "Problem 3",
+    title: "A sensitivity at a reset",
+    says: "After x⁺ = α x⁻ the sensitivity is α times that before.",
+    right: "The state at the event is fixed, and its time moves: the factor is f(αx_i)/f(x_i). It is α only where f(αx_i) = α f(x_i).",
+    holds: Holds::InPart,
+    numbers: |_| Threshold::default().numbers(),
+};
 
 /// A ball's state at a time after one bounce, in closed form.
 fn bounced<T: Real>(height: T, speed: T, restitution: T, gravity: f64, time: f64) -> [T; 2] {
@@ -165,17 +163,15 @@ impl Ball {
 }
 
 /// §6's law.
-pub(super) fn law() -> Claim {
-    Claim {
-        id: "jump_law",
-        place: "§6",
-        title: "The jump of sensitivities",
-        says: "At an impact ∂x⁺/∂θ = Δ_x ∂x⁻/∂θ + Δ_θ.",
-        right: "The time of the impact moves as well: (f⁺ − Δ_x f⁻) times its derivative is missing. It is right for e, which moves no impact.",
-        holds: Holds::InPart,
-        numbers: |_| Ball::default().numbers(),
-    }
-}
+pub(super) const LAW: Claim = Claim {
+    id: "jump_law",
+    place: "§6",
+    title: "The jump of sensitivities",
+    says: "At an impact ∂x⁺/∂θ = Δ_x ∂x⁻/∂θ + Δ_θ.",
+    right: "The time of the impact moves as well: (f⁺ − Δ_x f⁻) times its derivative is missing. It is right for e, which moves no impact.",
+    holds: Holds::InPart,
+    numbers: |_| Ball::default().numbers(),
+};
 
 #[cfg(test)]
 mod tests {

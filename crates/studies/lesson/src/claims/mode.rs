@@ -109,49 +109,43 @@ impl Shape {
 }
 
 /// The gradient and the condition.
-pub(super) fn projection() -> Claim {
-    Claim {
-        id: "mode_projection",
-        place: "Problem 4",
-        title: "Projection on one shape",
-        says: "dE/dq = −2∫eᵀΦ ds, and at the smallest E the error is orthogonal to Φ.",
-        right: "So it is. For (3s² − s³)/2 by s²: q* = 13/12, E = 1/1008; E(1) = 1/420, E′(1) = −1/30.",
-        holds: Holds::Yes,
-        numbers: |_| Ok::<_, Failure>(Shape::default().projection()),
-    }
-}
+pub(super) const PROJECTION: Claim = Claim {
+    id: "mode_projection",
+    place: "Problem 4",
+    title: "Projection on one shape",
+    says: "dE/dq = −2∫eᵀΦ ds, and at the smallest E the error is orthogonal to Φ.",
+    right: "So it is. For (3s² − s³)/2 by s²: q* = 13/12, E = 1/1008; E(1) = 1/420, E′(1) = −1/30.",
+    holds: Holds::Yes,
+    numbers: |_| Ok::<_, Failure>(Shape::default().projection()),
+};
 
 /// The factor 1/L.
-pub(super) fn mean() -> Claim {
-    Claim {
-        id: "mode_mean",
-        place: "Problem 4",
-        title: "The mean-square error",
-        says: "The mean-square error over the body is ∫‖e‖² ds.",
-        right: "A mean has the factor 1/L. On L = 1, where nobody sees it, both are the same.",
-        holds: Holds::InPart,
-        numbers: |_| Ok([1.0, 2.0].into_iter().flat_map(|length| Shape { length, ..Shape::default() }.mean()).collect()),
-    }
-}
+pub(super) const MEAN: Claim = Claim {
+    id: "mode_mean",
+    place: "Problem 4",
+    title: "The mean-square error",
+    says: "The mean-square error over the body is ∫‖e‖² ds.",
+    right: "A mean has the factor 1/L. On L = 1, where nobody sees it, both are the same.",
+    holds: Holds::InPart,
+    numbers: |_| Ok([1.0, 2.0].into_iter().flat_map(|length| Shape { length, ..Shape::default() }.mean()).collect()),
+};
 
 /// The weight of the dynamics.
-pub(super) fn weight() -> Claim {
-    Claim {
-        id: "mode_weight",
-        place: "Problem 4",
-        title: "The condition of Galerkin's type",
-        says: "The smallest E leads to a condition of Galerkin's type.",
-        right: "Galerkin's condition for the dynamics has the weight ρ(s). Without it q* is another where ρ is not constant.",
-        holds: Holds::InPart,
-        numbers: |_| {
-            let constant = Shape { density: vec![2.0], ..Shape::default() }.weight();
-            let named = |numbers: Vec<Number>, density: &'static str| {
-                numbers.into_iter().map(move |number| Number { name: format!("{}, {density}", number.name), ..number })
-            };
-            Ok(named(constant, "ρ constant").chain(named(Shape::default().weight(), "ρ = 1 + 3s")).collect())
-        },
-    }
-}
+pub(super) const WEIGHT: Claim = Claim {
+    id: "mode_weight",
+    place: "Problem 4",
+    title: "The condition of Galerkin's type",
+    says: "The smallest E leads to a condition of Galerkin's type.",
+    right: "Galerkin's condition for the dynamics has the weight ρ(s). Without it q* is another where ρ is not constant.",
+    holds: Holds::InPart,
+    numbers: |_| {
+        let constant = Shape { density: vec![2.0], ..Shape::default() }.weight();
+        let named = |numbers: Vec<Number>, density: &'static str| {
+            numbers.into_iter().map(move |number| Number { name: format!("{}, {density}", number.name), ..number })
+        };
+        Ok(named(constant, "ρ constant").chain(named(Shape::default().weight(), "ρ = 1 + 3s")).collect())
+    },
+};
 
 #[cfg(test)]
 mod tests {

@@ -52,51 +52,47 @@ fn regressors(joints: usize, seed: u64) -> Result<Vec<Number>, Failure> {
 }
 
 /// `LinearResidual`.
-pub(super) fn regressor() -> Claim {
-    Claim {
-        id: "linear_residual",
-        place: "§7",
-        title: "The linear residual",
-        says: "Φθ with the row (q, q̇, q̈, 1) for each joint, and 3n + 1 parameters.",
-        right: "Its row has 4n numbers: the lab's own call fails. With 4n all joints get the same torque. Right is I ⊗ (q, q̇, q̈, 1)ᵀ, n(3n + 1) numbers.",
-        holds: Holds::No,
-        numbers: |seed| Ok([regressors(2, seed)?, regressors(6, seed)?].concat()),
-    }
-}
+pub(super) const REGRESSOR: Claim = Claim {
+    id: "linear_residual",
+    place: "§7",
+    title: "The linear residual",
+    says: "Φθ with the row (q, q̇, q̈, 1) for each joint, and 3n + 1 parameters.",
+    right: "Its row has 4n numbers: the lab's own call fails. With 4n all joints get the same torque. Right is I ⊗ (q, q̇, q̈, 1)ᵀ, n(3n + 1) numbers.",
+    holds: Holds::No,
+    numbers: |seed| Ok([regressors(2, seed)?, regressors(6, seed)?].concat()),
+};
 
 /// `zeros_like(q)`.
-pub(super) fn zeros() -> Claim {
-    Claim {
-        id: "zeros_like",
-        place: "§7",
-        title: "The length of no residual",
-        says: "Without a residual the torques are less zeros as long as q.",
-        right: "Torques are as long as q̇: a free base has 7 coordinates and 6 velocities. The lab's subtraction then fails.",
-        holds: Holds::InPart,
-        numbers: |_| {
-            let body = |kind: JointType| BodyDescription {
-                name: "body".into(),
-                parent: None,
-                mass: 1.0,
-                com: [0.0; 3],
-                inertia: [1.0, 0.0, 0.0, 1.0, 0.0, 1.0],
-                joint: JointDescription { kind, ..JointDescription::default() },
-            };
-            let mut numbers = Vec::new();
-            for (name, kind, due) in [("a hinge", JointType::Revolute { axis: [0.0, 1.0, 0.0] }, 1), ("a free base", JointType::Free, 6)] {
-                let model = Model::<f64>::build(&Description { bodies: vec![body(kind)], ..Description::default() })?;
-                let (nq, nv) = (model.topology.nq(), model.topology.nv());
-                let mut q = vec![0.0; nq];
-                if let [.., w] = &mut q[..] {
-                    *w = if nq == 7 { 1.0 } else { 0.0 };
-                }
-                let torques = inverse_dynamics(&model, &q, &vec![0.0; nv], &vec![0.0; nv])?.len();
-                numbers.push(Number::count(format!("torques of {name}"), torques, due).stated(nq as f64, nq as f64 - nv as f64));
+pub(super) const ZEROS: Claim = Claim {
+    id: "zeros_like",
+    place: "§7",
+    title: "The length of no residual",
+    says: "Without a residual the torques are less zeros as long as q.",
+    right: "Torques are as long as q̇: a free base has 7 coordinates and 6 velocities. The lab's subtraction then fails.",
+    holds: Holds::InPart,
+    numbers: |_| {
+        let body = |kind: JointType| BodyDescription {
+            name: "body".into(),
+            parent: None,
+            mass: 1.0,
+            com: [0.0; 3],
+            inertia: [1.0, 0.0, 0.0, 1.0, 0.0, 1.0],
+            joint: JointDescription { kind, ..JointDescription::default() },
+        };
+        let mut numbers = Vec::new();
+        for (name, kind, due) in [("a hinge", JointType::Revolute { axis: [0.0, 1.0, 0.0] }, 1), ("a free base", JointType::Free, 6)] {
+            let model = Model::<f64>::build(&Description { bodies: vec![body(kind)], ..Description::default() })?;
+            let (nq, nv) = (model.topology.nq(), model.topology.nv());
+            let mut q = vec![0.0; nq];
+            if let [.., w] = &mut q[..] {
+                *w = if nq == 7 { 1.0 } else { 0.0 };
             }
-            Ok(numbers)
-        },
-    }
-}
+            let torques = inverse_dynamics(&model, &q, &vec![0.0; nv], &vec![0.0; nv])?.len();
+            numbers.push(Number::count(format!("torques of {name}"), torques, due).stated(nq as f64, nq as f64 - nv as f64));
+        }
+        Ok(numbers)
+    },
+};
 
 /// How many of the numbers have other bits.
 fn changed(before: &[f64], after: impl Fn(f64) -> f64) -> usize {
@@ -104,32 +100,30 @@ fn changed(before: &[f64], after: impl Fn(f64) -> f64) -> usize {
 }
 
 /// The plug-in's zero residual.
-pub(super) fn bits() -> Claim {
-    Claim {
-        id: "zero_residual_bits",
-        place: "§8",
-        title: "A residual of zero changes nothing",
-        says: "τ_nominal − 0 is τ_nominal.",
-        right: "To the bit it is. With the sign corrected it is not for −0: −0 + 0 = +0. So a wrapper must add nothing where there is no residual.",
-        holds: Holds::Yes,
-        numbers: |_| {
-            let model: Model<f64> =
-                Model::build(&Family::parse("chain:n=12,layout=spatial").map_err(Failure::of)?.generate().map_err(Failure::of)?)?;
-            let states = StateBatch::random(&model, 20, 7);
-            let mut torques = Vec::new();
-            for k in 0..states.count() {
-                torques.extend(inverse_dynamics(&model, states.q(k), states.v(k), states.a(k))?);
-            }
-            // An arm at rest without gravity.
-            let still = Arm { gravity: 0.0, v: [0.0; 2], ..Arm::default() };
-            let model = still.model()?.ok_or_else(|| Failure::of("rods are a body"))?;
-            torques.extend(inverse_dynamics(&model, &still.q, &still.v, &[0.0; 2])?);
-            let (none, zero) = (0, 0.0);
-            Ok(vec![
-                Number::count("torques whose bits τ − 0 changes", changed(&torques, |x| x - zero), none).stated(0.0, 0.0),
-                Number::count("bits of −0 that −0 − 0 changes", changed(&[-0.0], |x| x - zero), none).stated(0.0, 0.0),
-                Number::count("bits of −0 that −0 + 0 changes", changed(&[-0.0], |x| x + zero), 1),
-            ])
-        },
-    }
-}
+pub(super) const BITS: Claim = Claim {
+    id: "zero_residual_bits",
+    place: "§8",
+    title: "A residual of zero changes nothing",
+    says: "τ_nominal − 0 is τ_nominal.",
+    right: "To the bit it is. With the sign corrected it is not for −0: −0 + 0 = +0. So a wrapper must add nothing where there is no residual.",
+    holds: Holds::Yes,
+    numbers: |_| {
+        let model: Model<f64> =
+            Model::build(&Family::parse("chain:n=12,layout=spatial").map_err(Failure::of)?.generate().map_err(Failure::of)?)?;
+        let states = StateBatch::random(&model, 20, 7);
+        let mut torques = Vec::new();
+        for k in 0..states.count() {
+            torques.extend(inverse_dynamics(&model, states.q(k), states.v(k), states.a(k))?);
+        }
+        // An arm at rest without gravity.
+        let still = Arm { gravity: 0.0, v: [0.0; 2], ..Arm::default() };
+        let model = still.body()?;
+        torques.extend(inverse_dynamics(&model, &still.q, &still.v, &[0.0; 2])?);
+        let (none, zero) = (0, 0.0);
+        Ok(vec![
+            Number::count("torques whose bits τ − 0 changes", changed(&torques, |x| x - zero), none).stated(0.0, 0.0),
+            Number::count("bits of −0 that −0 − 0 changes", changed(&[-0.0], |x| x - zero), none).stated(0.0, 0.0),
+            Number::count("bits of −0 that −0 + 0 changes", changed(&[-0.0], |x| x + zero), 1),
+        ])
+    },
+};

@@ -7,7 +7,6 @@ use crate::arm::Arm;
 use crate::claim::{Claim, Failure, Holds, Number};
 use crate::quadrature::{Rule, simpson};
 use featherbench_dynamics::{ParameterSensitivity, inertial_parameters};
-use featherbench_model::Model;
 use featherbench_spatial::{DoubleDouble, Dual, Real};
 use std::f64::consts::TAU;
 
@@ -95,56 +94,47 @@ fn first_order() -> Number {
 }
 
 /// Problem 2.
-pub(super) fn ratio() -> Claim {
-    Claim {
-        id: "ratio_variance",
-        place: "§5, Problem 2",
-        title: "Variance of an acceleration",
-        says: "To first order the variance is (τ − b q̇)² σ²/m⁴, about the acceleration at the mean mass.",
-        right: "To first order it is. At ±20 % it is 5.8 % below that of a uniform mass, and other laws of the same σ differ from both; the mean moves too.",
-        holds: Holds::InPart,
-        numbers: |_| Ok([vec![first_order()], Ratio { deviation: 0.2 }.numbers()].concat()),
-    }
-}
+pub(super) const RATIO: Claim = Claim {
+    id: "ratio_variance",
+    place: "§5, Problem 2",
+    title: "Variance of an acceleration",
+    says: "To first order the variance is (τ − b q̇)² σ²/m⁴, about the acceleration at the mean mass.",
+    right: "To first order it is. At ±20 % it is 5.8 % below that of a uniform mass, and other laws of the same σ differ from both; the mean moves too.",
+    holds: Holds::InPart,
+    numbers: |_| Ok([vec![first_order()], Ratio { deviation: 0.2 }.numbers()].concat()),
+};
 
 /// A normal mass.
-pub(super) fn gaussian() -> Claim {
-    Claim {
-        id: "ratio_gaussian",
-        place: "§5, Problem 2",
-        title: "A normally distributed mass",
-        says: "Mean and covariance of the parameters suffice; nothing is said of their distribution.",
-        right: "Of a normal mass 1/m has no mean and no variance: masses between ε and 2ε add φ(0)/(2ε) to E[1/m²]. It must be refused or cut off.",
-        holds: Holds::No,
-        numbers: |_| {
-            let (sigma, near) = (0.2, 1e-15);
-            let density = |m: f64| normal((m - 1.0) / sigma) / sigma;
-            // In x = m/ε: ε ∫ φ(m)/m² dm = ∫ φ(εx)/x² dx from 1 to 2.
-            let share = Rule::gauss(20).integral(1.0, 2.0, |x| density(near * x) / (x * x));
-            let known = 0.5 * density(0.0);
-            Ok(vec![Number::new("ε times what masses in (ε, 2ε) add to E[1/m²], ε = 1e-15", "1", share, known).stated(0.0, -known)])
-        },
-    }
-}
+pub(super) const GAUSSIAN: Claim = Claim {
+    id: "ratio_gaussian",
+    place: "§5, Problem 2",
+    title: "A normally distributed mass",
+    says: "Mean and covariance of the parameters suffice; nothing is said of their distribution.",
+    right: "Of a normal mass 1/m has no mean and no variance: masses between ε and 2ε add φ(0)/(2ε) to E[1/m²]. It must be refused or cut off.",
+    holds: Holds::No,
+    numbers: |_| {
+        let (sigma, near) = (0.2, 1e-15);
+        let density = |m: f64| normal((m - 1.0) / sigma) / sigma;
+        // In x = m/ε: ε ∫ φ(m)/m² dm = ∫ φ(εx)/x² dx from 1 to 2.
+        let share = Rule::gauss(20).integral(1.0, 2.0, |x| density(near * x) / (x * x));
+        let known = 0.5 * density(0.0);
+        Ok(vec![Number::new("ε times what masses in (ε, 2ε) add to E[1/m²], ε = 1e-15", "1", share, known).stated(0.0, -known)])
+    },
+};
 
 /// J_θ.
-pub(super) fn sensitivity() -> Claim {
-    Claim {
-        id: "parameter_sensitivity",
-        place: "§5",
-        title: "Derivatives with respect to parameters",
-        says: "J_θ is expensive; to compute it is an open problem.",
-        right: "Without contact J_θ = −M⁻¹ Y(q, q̇, q̈) exactly: one regressor and one factorization.",
-        holds: Holds::Silent,
-        numbers: |_| sensitivities(&Arm::default()),
-    }
-}
+pub(super) const SENSITIVITY: Claim = Claim {
+    id: "parameter_sensitivity",
+    place: "§5",
+    title: "Derivatives with respect to parameters",
+    says: "J_θ is expensive; to compute it is an open problem.",
+    right: "Without contact J_θ = −M⁻¹ Y(q, q̇, q̈) exactly: one regressor and one factorization.",
+    holds: Holds::Silent,
+    numbers: |_| sensitivities(&Arm::default()),
+};
 
 fn sensitivities(arm: &Arm) -> Result<Vec<Number>, Failure> {
-    let model = |masses: [f64; 2]| -> Result<Model<f64>, Failure> {
-        Arm { masses, ..*arm }.model()?.ok_or_else(|| Failure::of("no body has the lesson's links; take rods or tip masses"))
-    };
-    let nominal = model(arm.masses)?;
+    let nominal = arm.body()?;
     let (mut a, mut by_parameters) = ([0.0; 2], [0.0; 40]);
     ParameterSensitivity::new(&nominal).run(&nominal, &arm.q, &arm.v, &arm.tau, None, &mut a, &mut by_parameters)?;
     let mut numbers = Vec::new();
@@ -152,7 +142,8 @@ fn sensitivities(arm: &Arm) -> Result<Vec<Number>, Failure> {
         // Parameters are linear in the mass: their derivative is a difference over one kilogramme.
         let mut heavier = arm.masses;
         heavier[body] += 1.0;
-        let (from, to) = (inertial_parameters::<f64, f64>(&nominal), inertial_parameters::<f64, f64>(&model(heavier)?));
+        let (from, to) =
+            (inertial_parameters::<f64, f64>(&nominal), inertial_parameters::<f64, f64>(&Arm { masses: heavier, ..*arm }.body()?));
         let direction: Vec<f64> = to.iter().zip(&from).map(|(to, from)| to - from).collect();
         let masses = [0, 1].map(|k| {
             let rate = if k == body { DoubleDouble::one() } else { DoubleDouble::zero() };
@@ -219,17 +210,15 @@ impl Drop {
 }
 
 /// Modes.
-pub(super) fn modes() -> Claim {
-    Claim {
-        id: "random_modes",
-        place: "§5",
-        title: "Linearisation across an impact",
-        says: "Σ ≈ J Σ_θ Jᵀ; it may break down at hybrid events.",
-        right: "It does: a ball of random height has two modes. Linearised at the mean it falls for certain, with a deviation of 0.",
-        holds: Holds::No,
-        numbers: |_| Ok(Drop::default().numbers()),
-    }
-}
+pub(super) const MODES: Claim = Claim {
+    id: "random_modes",
+    place: "§5",
+    title: "Linearisation across an impact",
+    says: "Σ ≈ J Σ_θ Jᵀ; it may break down at hybrid events.",
+    right: "It does: a ball of random height has two modes. Linearised at the mean it falls for certain, with a deviation of 0.",
+    holds: Holds::No,
+    numbers: |_| Ok(Drop::default().numbers()),
+};
 
 #[cfg(test)]
 mod tests {

@@ -6,7 +6,6 @@
 use crate::arm::Arm;
 use crate::claim::{Claim, Failure, Holds, Number};
 use featherbench_dynamics::{forward_dynamics, inverse_dynamics};
-use featherbench_model::Model;
 use featherbench_spatial::{DoubleDouble, Real};
 
 type Wide = DoubleDouble;
@@ -36,10 +35,6 @@ pub(crate) struct Both {
     r_second: [f64; 2],
 }
 
-fn model(arm: &Arm) -> Result<Model<f64>, Failure> {
-    arm.model()?.ok_or_else(|| Failure::of("no body has the lesson's links; take rods or tip masses"))
-}
-
 fn two<T: Copy>(list: &[T]) -> Result<[T; 2], Failure> {
     list.try_into().map_err(|_| Failure::of("the arm has two joints"))
 }
@@ -51,7 +46,7 @@ impl Pair {
 
     pub(crate) fn both(&self) -> Result<Both, Failure> {
         let (q, v) = (self.nominal.q, self.nominal.v);
-        let (truth, nominal) = (model(&self.truth())?, model(&self.nominal)?);
+        let (truth, nominal) = (self.truth().body()?, self.nominal.body()?);
         let a = two(&forward_dynamics(&truth, &q, &v, &self.nominal.tau)?)?;
         let told = two(&inverse_dynamics(&nominal, &q, &v, &a)?)?;
         let own = two(&inverse_dynamics(&truth, &q, &v, &a)?)?;
@@ -112,84 +107,71 @@ impl Pair {
 }
 
 /// §1, §2 and §11 use one residual with two signs.
-pub(super) fn convention() -> Claim {
-    Claim {
-        id: "residual_convention",
-        place: "§1, §2, §11",
-        title: "One residual in three sections",
-        says: "§1 adds d to the torques, §2 subtracts r from them, §11 subtracts d. All three are called the residual.",
-        right: "§1's d is −r; §11's d is +r. Who fits r and puts it in as §1's d is wrong by 2r.",
-        holds: Holds::InPart,
-        numbers: |_| Pair::default().sections(),
-    }
-}
+pub(super) const CONVENTION: Claim = Claim {
+    id: "residual_convention",
+    place: "§1, §2, §11",
+    title: "One residual in three sections",
+    says: "§1 adds d to the torques, §2 subtracts r from them, §11 subtracts d. All three are called the residual.",
+    right: "§1's d is −r; §11's d is +r. Who fits r and puts it in as §1's d is wrong by 2r.",
+    holds: Holds::InPart,
+    numbers: |_| Pair::default().sections(),
+};
 
 /// The labs in Python and C++.
-pub(super) fn torque() -> Claim {
-    Claim {
-        id: "residual_torque",
-        place: "§7, §8",
-        title: "Inverse dynamics with a residual",
-        says: "τ = τ_nominal − r, with the r of §2.",
-        right: "τ = τ_nominal + r: by its definition r is what the nominal torque lacks. The labs are wrong by 2r.",
-        holds: Holds::No,
-        numbers: |_| Pair::default().torque(),
-    }
-}
+pub(super) const TORQUE: Claim = Claim {
+    id: "residual_torque",
+    place: "§7, §8",
+    title: "Inverse dynamics with a residual",
+    says: "τ = τ_nominal − r, with the r of §2.",
+    right: "τ = τ_nominal + r: by its definition r is what the nominal torque lacks. The labs are wrong by 2r.",
+    holds: Holds::No,
+    numbers: |_| Pair::default().torque(),
+};
 
 /// Problem 1, what is to be shown.
-pub(super) fn power() -> Claim {
-    Claim {
-        id: "residual_power",
-        place: "Problem 1",
-        title: "Power of the residual",
-        says: "The power error is q̇ᵀr.",
-        right: "It is, where the nominal power is what the nominal model needs for the same motion: P̂ = q̇ᵀ(M̂q̈ + ĥ).",
-        holds: Holds::Yes,
-        numbers: |_| {
-            let [truth, told, of_r, told_second] = Pair::default().power()?;
-            Ok(vec![
-                Number::new("P⋆ − P̂", "W", truth - told, truth - told_second).stated(of_r, 0.0),
-                Number::new("P̂", "W", told, told_second),
-            ])
-        },
-    }
-}
+pub(super) const POWER: Claim = Claim {
+    id: "residual_power",
+    place: "Problem 1",
+    title: "Power of the residual",
+    says: "The power error is q̇ᵀr.",
+    right: "It is, where the nominal power is what the nominal model needs for the same motion: P̂ = q̇ᵀ(M̂q̈ + ĥ).",
+    holds: Holds::Yes,
+    numbers: |_| {
+        let [truth, told, of_r, told_second] = Pair::default().power()?;
+        Ok(vec![Number::new("P⋆ − P̂", "W", truth - told, truth - told_second).stated(of_r, 0.0), Number::new("P̂", "W", told, told_second)])
+    },
+};
 
 /// Problem 1, the proof.
-pub(super) fn proof() -> Claim {
-    Claim {
-        id: "residual_power_proof",
-        place: "Problem 1",
-        title: "Proof of the power balance",
-        says: "With P_nom = τᵀSq̇ it follows that P⋆ − P_nom = q̇ᵀr.",
-        right: "P⋆ is τᵀSq̇ as well, so this difference is 0 for every robot. The proof needs P̂ of the line above.",
-        holds: Holds::No,
-        numbers: |_| {
-            let pair = Pair::default();
-            let [truth, told, of_r, _] = pair.power()?;
-            // τ taken back from the true model, against τ itself.
-            let both = pair.both()?;
-            let back = pair.nominal.torques(pair.masses.map(Wide::from_f64), both.a.map(Wide::from_f64)).map(Wide::to_f64);
-            let again = back[0] * pair.nominal.v[0] + back[1] * pair.nominal.v[1];
-            let zero = Number::new("P⋆ − P_nom over P⋆", "1", 0.0, if (again - truth).abs() <= 1e-13 * truth.abs() { 0.0 } else { again });
-            Ok(vec![zero.stated(of_r / truth, (truth - told) / truth)])
-        },
-    }
-}
+pub(super) const PROOF: Claim = Claim {
+    id: "residual_power_proof",
+    place: "Problem 1",
+    title: "Proof of the power balance",
+    says: "With P_nom = τᵀSq̇ it follows that P⋆ − P_nom = q̇ᵀr.",
+    right: "P⋆ is τᵀSq̇ as well, so this difference is 0 for every robot. The proof needs P̂ of the line above.",
+    holds: Holds::No,
+    numbers: |_| {
+        let pair = Pair::default();
+        let [truth, told, of_r, _] = pair.power()?;
+        // τ taken back from the true model, against τ itself.
+        let both = pair.both()?;
+        let back = pair.nominal.torques(pair.masses.map(Wide::from_f64), both.a.map(Wide::from_f64)).map(Wide::to_f64);
+        let again = back[0] * pair.nominal.v[0] + back[1] * pair.nominal.v[1];
+        let zero = Number::new("P⋆ − P_nom over P⋆", "1", 0.0, if (again - truth).abs() <= 1e-13 * truth.abs() { 0.0 } else { again });
+        Ok(vec![zero.stated(of_r / truth, (truth - told) / truth)])
+    },
+};
 
 /// Problem 1 where the robot touches something.
-pub(super) fn contact() -> Claim {
-    Claim {
-        id: "residual_contact",
-        place: "§2",
-        title: "The residual in contact",
-        says: "The nominal model has its own Ĵ and λ̂, and the true dynamics are the nominal ones with Jᵀλ − r.",
-        right: "So r = τ + Jᵀλ − (M̂q̈ + ĥ): the measured contact force. Ĵᵀλ̂ instead leaves Ĵᵀλ̂ − Jᵀλ in it.",
-        holds: Holds::No,
-        numbers: |_| Guided::default().numbers(),
-    }
-}
+pub(super) const CONTACT: Claim = Claim {
+    id: "residual_contact",
+    place: "§2",
+    title: "The residual in contact",
+    says: "The nominal model has its own Ĵ and λ̂, and the true dynamics are the nominal ones with Jᵀλ − r.",
+    right: "So r = τ + Jᵀλ − (M̂q̈ + ĥ): the measured contact force. Ĵᵀλ̂ instead leaves Ĵᵀλ̂ − Jᵀλ in it.",
+    holds: Holds::No,
+    numbers: |_| Guided::default().numbers(),
+};
 
 /// An arm whose tip slides on a smooth vertical guide; the nominal arm has another second length.
 #[derive(Clone, Copy, Debug)]
@@ -235,7 +217,7 @@ impl Guided {
         let (a_wide, j_wide, force_wide) = guided::<Wide>(&truth);
         let (_, j_nominal, force_nominal) = guided::<f64>(&nominal);
         let (_, j_nominal_wide, force_nominal_wide) = guided::<Wide>(&nominal);
-        let told = inverse_dynamics(&model(&nominal)?, &truth.q, &truth.v, &a)?;
+        let told = inverse_dynamics(&nominal.body()?, &truth.q, &truth.v, &a)?;
         let masses = truth.masses.map(Wide::from_f64);
         let (own_wide, told_wide) = (truth.torques(masses, a_wide), nominal.torques(masses, a_wide));
         let mut numbers = vec![Number::new("contact force", "N", force, force_wide.to_f64())];
@@ -251,32 +233,30 @@ impl Guided {
 }
 
 /// §1: d may depend on q̈.
-pub(super) fn implicit() -> Claim {
-    Claim {
-        id: "residual_implicit",
-        place: "§1",
-        title: "A residual that depends on the acceleration",
-        says: "The dynamics are M q̈ + h = τ + d(q, q̇, q̈), for any d.",
-        right: "q̈ is on both sides. It is determined where M − ∂d/∂q̈ is nonsingular: m a = τ + κ a has no solution at κ = m.",
-        holds: Holds::InPart,
-        numbers: |_| {
-            let (mass, force) = (1.0, 1.0);
-            let count = |share: f64| usize::from(mass - share != 0.0);
-            let half = 0.5 * mass;
-            // Second route: the geometric series of the fixed point a ← (τ + κ a)/m.
-            let by_series = (0..60).rev().fold(0.0, |sum, _| (force + half * sum) / mass);
-            let [large, small] = [2.0 * mass, force / (mass - 2.0 * mass)];
-            let residual = mass * small - (force + large * small);
-            Ok(vec![
-                Number::count("solutions, κ = m/2", count(half), 1).stated(1.0, 0.0),
-                Number::count("solutions, κ = m", count(mass), 0).stated(1.0, 1.0),
-                Number::new("acceleration, κ = m/2", "m/s²", force / (mass - half), by_series),
-                // The fixed point diverges, and there is one solution all the same.
-                Number::new("acceleration, κ = 2m", "m/s²", small, small + residual),
-            ])
-        },
-    }
-}
+pub(super) const IMPLICIT: Claim = Claim {
+    id: "residual_implicit",
+    place: "§1",
+    title: "A residual that depends on the acceleration",
+    says: "The dynamics are M q̈ + h = τ + d(q, q̇, q̈), for any d.",
+    right: "q̈ is on both sides. It is determined where M − ∂d/∂q̈ is nonsingular: m a = τ + κ a has no solution at κ = m.",
+    holds: Holds::InPart,
+    numbers: |_| {
+        let (mass, force) = (1.0, 1.0);
+        let count = |share: f64| usize::from(mass - share != 0.0);
+        let half = 0.5 * mass;
+        // Second route: the geometric series of the fixed point a ← (τ + κ a)/m.
+        let by_series = (0..60).rev().fold(0.0, |sum, _| (force + half * sum) / mass);
+        let [large, small] = [2.0 * mass, force / (mass - 2.0 * mass)];
+        let residual = mass * small - (force + large * small);
+        Ok(vec![
+            Number::count("solutions, κ = m/2", count(half), 1).stated(1.0, 0.0),
+            Number::count("solutions, κ = m", count(mass), 0).stated(1.0, 1.0),
+            Number::new("acceleration, κ = m/2", "m/s²", force / (mass - half), by_series),
+            // The fixed point diverges, and there is one solution all the same.
+            Number::new("acceleration, κ = 2m", "m/s²", small, small + residual),
+        ])
+    },
+};
 
 #[cfg(test)]
 mod tests {

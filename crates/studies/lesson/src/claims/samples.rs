@@ -70,17 +70,15 @@ impl Lab {
 }
 
 /// The lab in MATLAB.
-pub(super) fn claim() -> Claim {
-    Claim {
-        id: "sampled_masses",
-        place: "§10",
-        title: "Torques of uncertain masses",
-        says: "A hundred draws of a mass within ±20 % show the spread of six joint torques.",
-        right: "One mass for all joints gives six equal torques, and a covariance of rank 1. The spread of each is right: [4, 6], σ = 1/√3.",
-        holds: Holds::InPart,
-        numbers: |seed| Lab::default().numbers(seed),
-    }
-}
+pub(super) const CLAIM: Claim = Claim {
+    id: "sampled_masses",
+    place: "§10",
+    title: "Torques of uncertain masses",
+    says: "A hundred draws of a mass within ±20 % show the spread of six joint torques.",
+    right: "One mass for all joints gives six equal torques, and a covariance of rank 1. The spread of each is right: [4, 6], σ = 1/√3.",
+    holds: Holds::InPart,
+    numbers: |seed| Lab::default().numbers(seed),
+};
 
 #[cfg(test)]
 mod tests {

@@ -12,8 +12,7 @@ type Matrix = [[f64; 2]; 2];
 
 /// The largest entry of Ṁ − C − Cᵀ.
 fn violation(rate: &Matrix, c: &Matrix) -> f64 {
-    let of = |i: usize, j: usize| (rate[i][j] - c[i][j] - c[j][i]).abs();
-    [of(0, 0), of(0, 1), of(1, 1)].into_iter().fold(0.0, |most: f64, x| if x.is_nan() || x > most { x } else { most })
+    largest([(0, 0), (0, 1), (1, 1)].map(|(i, j)| rate[i][j] - c[i][j] - c[j][i]))
 }
 
 /// q̇ᵀ(Ṁ − 2C)q̇.
@@ -22,7 +21,7 @@ fn scalar(rate: &Matrix, c: &Matrix, v: [f64; 2]) -> f64 {
 }
 
 fn numbers(arm: &Arm) -> Result<Vec<Number>, Failure> {
-    let model = arm.model()?.ok_or_else(|| Failure::of("no body has the lesson's links; take rods or tip masses"))?;
+    let model = arm.body()?;
     let (c, rate) = (coriolis_matrix(&model, &arm.q, &arm.v)?, mass_matrix_rate(&model, &arm.q, &arm.v)?);
     let from = |entry: &dyn Fn(usize, usize) -> f64| [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]];
     let (ours, rate) = (from(&|i, j| c.get(i, j)), from(&|i, j| rate.get(i.max(j), i.min(j))));
@@ -56,17 +55,15 @@ fn snapped(value: f64, size: f64) -> f64 {
 }
 
 /// §2's structural property.
-pub(super) fn claim() -> Claim {
-    Claim {
-        id: "skew_symmetry",
-        place: "§2",
-        title: "Ṁ − 2C is skew-symmetric",
-        says: "It is a structural property of rigid-body dynamics.",
-        right: "It is one of Christoffel's C. Other C with the same Cq̇ violate it, though q̇ᵀ(Ṁ − 2C)q̇ = 0 for each: test the matrix.",
-        holds: Holds::InPart,
-        numbers: |_| numbers(&Arm::default()),
-    }
-}
+pub(super) const CLAIM: Claim = Claim {
+    id: "skew_symmetry",
+    place: "§2",
+    title: "Ṁ − 2C is skew-symmetric",
+    says: "It is a structural property of rigid-body dynamics.",
+    right: "It is one of Christoffel's C. Other C with the same Cq̇ violate it, though q̇ᵀ(Ṁ − 2C)q̇ = 0 for each: test the matrix.",
+    holds: Holds::InPart,
+    numbers: |_| numbers(&Arm::default()),
+};
 
 #[cfg(test)]
 mod tests {

@@ -1,30 +1,11 @@
 //! What can be wrong with an MJCF file.
 
-use crate::{Place, TextError, text};
+use crate::{FileError, TextError, text};
 use featherbench_model::Malformed;
-use std::fmt;
 use thiserror::Error;
 
 /// An MJCF file that cannot be imported: the place, and why.
-#[derive(Debug)]
-pub struct MjcfError {
-    /// The file, and the position where it is known.
-    pub place: Place,
-    /// What is wrong.
-    pub problem: Box<MjcfProblem>,
-}
-
-impl fmt::Display for MjcfError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.place, self.problem)
-    }
-}
-
-impl std::error::Error for MjcfError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        self.problem.source()
-    }
-}
+pub type MjcfError = FileError<MjcfProblem>;
 
 /// What is wrong with an MJCF file.
 #[derive(Debug, Error)]
@@ -182,6 +163,6 @@ impl At {
     pub(super) fn in_text(self, name: &str, text: &str) -> MjcfError {
         let of_parser = if let MjcfProblem::Xml { position, .. } = &self.problem { Some(*position) } else { None };
         let position = self.offset.map(|offset| text::position(text, offset)).or(of_parser);
-        MjcfError { place: Place { file: name.to_owned(), position }, problem: Box::new(self.problem) }
+        MjcfError::new(name, position, self.problem)
     }
 }

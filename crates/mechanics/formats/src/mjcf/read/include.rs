@@ -8,7 +8,7 @@
 
 use super::error::At;
 use super::{MjcfError, MjcfProblem, Note, parse};
-use crate::{Place, text};
+use crate::text;
 use roxmltree::Node;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -160,7 +160,7 @@ enum Content {
 /// The text of a file, without a byte-order mark.
 fn load(path: &Path, name: &str) -> Result<String, MjcfError> {
     let checked = text::read(path, super::LIMIT).and_then(|text| text::check(&text, super::LIMIT).map(str::to_owned));
-    checked.map_err(|error| MjcfError { place: Place { file: name.to_owned(), position: None }, problem: Box::new(error.into()) })
+    checked.map_err(|error| MjcfError::new(name, None, error))
 }
 
 /// The file that an include names.

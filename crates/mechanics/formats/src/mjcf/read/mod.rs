@@ -10,18 +10,16 @@ mod tree;
 
 pub use error::{MjcfError, MjcfProblem};
 
-use crate::{Place, text};
+use crate::text;
 use error::At;
 use featherbench_model::Description;
 use include::Source;
-use roxmltree::{Document, ParsingOptions};
+use roxmltree::Document;
 use std::fmt;
 use std::path::Path;
 
 /// The largest file that is read, bytes.
 pub const LIMIT: usize = 10 << 20;
-/// More nodes than any robot has; each costs some hundred bytes.
-const MOST_NODES: u32 = 1_000_000;
 
 /// Something that was left out.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -61,8 +59,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<(Description, Vec<Note>), MjcfErro
 /// # Errors
 /// [`MjcfError`], naming file, line, column and the body.
 pub fn import(text: &str, file: &str) -> Result<(Description, Vec<Note>), MjcfError> {
-    let place = |position| Place { file: file.to_owned(), position };
-    let text = text::check(text, LIMIT).map_err(|problem| MjcfError { place: place(None), problem: Box::new(problem.into()) })?;
+    let text = text::check(text, LIMIT).map_err(|problem| MjcfError::new(file, None, problem))?;
     assemble(&Source::text(text, file), file)
 }
 
@@ -80,15 +77,12 @@ fn assemble(source: &Source, file: &str) -> Result<(Description, Vec<Note>), Mjc
     Ok((description, notes.into_iter().map(|(offset, text)| source.note(offset, text)).collect()))
 }
 
-/// The document of a text. Entities are off, and the parser keeps its own stack.
+/// The document of a text.
 fn parse(text: &str) -> Result<Document<'_>, At> {
-    let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    Document::parse_with_options(text, options).map_err(|error| match error {
+    text::xml(text).map_err(|error| match error {
         roxmltree::Error::DtdDetected => MjcfProblem::DocumentType.at(text.find("<!DOCTYPE").unwrap_or(0)),
         other => {
-            let (place, message) = (other.pos(), other.to_string());
-            let position = (place.row as usize, place.col as usize);
-            let message = message.strip_suffix(&format!(" at {place}")).unwrap_or(&message).to_owned();
+            let (message, position) = text::of_parser(&other);
             At { offset: None, problem: MjcfProblem::Xml { message, position } }
         }
     })
