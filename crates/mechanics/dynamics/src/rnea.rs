@@ -13,37 +13,33 @@ use crate::step::{add_joint, by_kind, cross_joint, expect_workspace, expect_wren
 use featherbench_model::{JointKind, Model, Topology};
 use featherbench_spatial::{Force, Lift, Motion, Real, Transform, Vec3};
 
-mod parallel;
-
-pub use parallel::ParallelRnea;
-
 /// The workspace of inverse dynamics.
 #[derive(Clone, Debug)]
 pub struct Rnea<T> {
     /// Of each body.
-    links: Vec<Link<T>>,
+    pub(crate) links: Vec<Link<T>>,
     /// Of the bodies on the path that the outward recursion is on, by path slot ([`Joint::slot`](featherbench_model::Joint::slot)).
-    path: Vec<Moving<T>>,
+    pub(crate) path: Vec<Moving<T>>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Link<T> {
+pub(crate) struct Link<T> {
     /// Placement in the parent: what [`JointKind::keep`] keeps of it.
-    x: Transform<T>,
+    pub(crate) x: Transform<T>,
     /// Force f transmitted across the joint.
-    f: Force<T>,
+    pub(crate) f: Force<T>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Moving<T> {
+pub(crate) struct Moving<T> {
     /// Angular velocity ω.
-    omega: Vec3<T>,
+    pub(crate) omega: Vec3<T>,
     /// Classical acceleration a.
-    a: Motion<T>,
+    pub(crate) a: Motion<T>,
 }
 
 impl<T: Real> Moving<T> {
-    fn at_rest() -> Self {
+    pub(crate) fn at_rest() -> Self {
         Self { omega: Vec3::zero(), a: Motion::zero() }
     }
 }
@@ -116,7 +112,7 @@ impl<T: Real> Rnea<T> {
 }
 
 /// An error if an argument does not fit the model.
-fn expect_shapes<P: Real, T: Real>(
+pub(crate) fn expect_shapes<P: Real, T: Real>(
     model: &Model<P>,
     q: &[T],
     v: &[T],
@@ -132,7 +128,7 @@ fn expect_shapes<P: Real, T: Real>(
 /// The outward step of one body: its placement, ω, a and f.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes its link")]
-fn outward<T: Real, P: Real + Lift<T>, const ACCELERATED: bool>(
+pub(crate) fn outward<T: Real, P: Real + Lift<T>, const ACCELERATED: bool>(
     kind: JointKind,
     model: &Model<P>,
     i: usize,

@@ -36,7 +36,8 @@
 //! Frames: on the base side each body's quantities are at its centre of mass, in its compiled axes. There three of the l_i are unit vectors.
 //! Shapes and units: those of `aba.rs`.
 
-use super::{Inputs, Link, OnPath, place, set_velocity};
+use crate::aba::free::apparent_force;
+use crate::aba::{Inputs, Link, OnPath, place, set_velocity};
 use crate::error::Pivot;
 use crate::step::{by_kind, cross_joint, expect_bodies};
 use crate::{Aba, DimensionError, Error};
@@ -374,7 +375,7 @@ fn free_body<T: Real>(body: &Braced<T>, tau: &[T], dof: usize, smallest: &mut Pi
     flexibility.translational = Sym3 { xx: x.x, xy: x.y, xz: x.z, yy: y.y, yz: y.z, zz: z.z };
     flexibility.rotational = Sym3::scalar(T::one() / mass);
 
-    let joint_force = super::free::apparent_force(tau);
+    let joint_force = apparent_force(tau);
     let f = Force::new(joint_force.ang - com.cross(joint_force.lin), joint_force.lin) - body.p;
     (flexibility, Motion::new(flexibility.translational * f.ang, f.lin * (T::one() / mass)))
 }

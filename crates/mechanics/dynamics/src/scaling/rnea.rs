@@ -1,6 +1,6 @@
 //! Inverse dynamics of one state on all cores, sub-tree by sub-tree.
 //!
-//! Source, frames, shapes and units: those of `rnea.rs`, whose functions for one body it calls. The tree is divided by `parallel.rs`. Each part
+//! Source, frames, shapes and units: those of `rnea.rs`, whose functions for one body it calls. The tree is divided by `scaling/mod.rs`. Each part
 //! has a stand-in for its parent: it brings ω and a of the parent into the part, and collects the force that the part passes on.
 //! Each task has path slots of its own.
 //!
@@ -13,9 +13,9 @@
 //! Cost: O(n), the operations of [`Rnea`]. Beside what `rayon` itself allocates, a call allocates three lists of slices,
 //! with one entry per task each.
 
-use super::{Link, Moving, outward};
+use super::{Part, Piece, Plan};
 use crate::error::expect;
-use crate::parallel::{Part, Piece, Plan};
+use crate::rnea::{Link, Moving, expect_shapes, outward};
 use crate::step::{by_kind, expect_workspace};
 use crate::{DimensionError, Rnea};
 use featherbench_model::{Joint, Model, Topology};
@@ -84,7 +84,7 @@ impl<T: Real> ParallelRnea<T> {
     ) -> Result<(), DimensionError> {
         expect("acceleration a", model.topology.nv(), a.len())?;
         expect_workspace(model, self.rnea.links.len(), self.rnea.path.len())?;
-        super::expect_shapes(model, q, v, wrenches, tau)?;
+        expect_shapes(model, q, v, wrenches, tau)?;
         self.plan.expect(&model.topology)?;
         let Self { plan, rnea: Rnea { links, path }, parents, paths } = self;
         let joints = model.topology.joints();

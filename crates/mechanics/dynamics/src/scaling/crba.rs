@@ -1,6 +1,6 @@
 //! The joint-space inertia matrix of one state on all cores, sub-tree by sub-tree.
 //!
-//! Source, frames, shapes and units: those of `crba.rs`, whose functions for one joint it calls. The tree is divided by `parallel.rs`. The rows
+//! Source, frames, shapes and units: those of `crba.rs`, whose functions for one joint it calls. The tree is divided by `scaling/mod.rs`. The rows
 //! of a task's dofs are consecutive. The task computes those of its parts: it carries their forces together through the trunk to the world.
 //! Dofs of the trunk stand between them; their forces are zero, and step 3 writes their rows.
 //!
@@ -13,8 +13,8 @@
 //! Cost: O(n + Σ d_k), the operations of [`crate::Crba`] and those on the zeros of step 2. Beside what `rayon` itself allocates, a call allocates
 //! four lists of slices, with one entry per task each.
 
-use super::{Forces, column_force, project};
-use crate::parallel::{Part, Piece, Plan, Task};
+use super::{Part, Piece, Plan, Task};
+use crate::crba::{Forces, column_force, expect_shapes, project};
 use crate::step::by_kind;
 use crate::tree_sparse::Row;
 use crate::{DimensionError, TreeSparse};
@@ -113,7 +113,7 @@ impl<T: Real> ParallelCrba<T> {
     #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], matrix: &mut TreeSparse<T>) -> Result<(), DimensionError> {
         let Self { plan, pieces, composites, placements, trunk, trunk_rows, carried, forces } = self;
-        super::expect_shapes(model, composites.len(), q, matrix)?;
+        expect_shapes(model, composites.len(), q, matrix)?;
         plan.expect(&model.topology)?;
 
         for body in trunk.iter_mut() {
