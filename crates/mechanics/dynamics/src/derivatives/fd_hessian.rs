@@ -43,7 +43,7 @@ impl<T: Real> FdSecondPartials<T> {
 /// The workspace of weighted second derivatives of forward dynamics.
 ///
 /// ```
-/// use featherbench_dynamics::{FdHessian, FdPartials, FdSecondPartials, fd_derivatives};
+/// use featherbench_dynamics::{FdHessian, FdPartials, FdSecondPartials, State, fd_derivatives};
 /// use featherbench_model::Model;
 /// use featherbench_robots::{Family, StateBatch};
 ///
@@ -51,7 +51,8 @@ impl<T: Real> FdSecondPartials<T> {
 /// let states = StateBatch::random(&model, 1, 7);
 /// let (q, v, tau, weights) = (states.q(0), states.v(0), states.tau(0), states.a(0));
 /// let (mut first, mut second) = (FdPartials::new(&model.topology), FdSecondPartials::new(&model.topology));
-/// FdHessian::new(&model.topology).run(&model, q, v, tau, None, weights, &mut first, &mut second)?;
+/// let state = State { q, v, given: tau, wrenches: None };
+/// FdHessian::new(&model.topology).run(&model, state, weights, &mut first, &mut second)?;
 ///
 /// // What a step of 1e-6 in v₂ does to the weighted derivatives by q.
 /// let moved = |step: f64| {

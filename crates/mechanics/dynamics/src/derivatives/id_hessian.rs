@@ -58,7 +58,7 @@ impl<T: Real> IdSecondPartials<T> {
 /// The workspace of weighted second derivatives of inverse dynamics.
 ///
 /// ```
-/// use featherbench_dynamics::{IdHessian, IdSecondPartials, id_derivatives};
+/// use featherbench_dynamics::{IdHessian, IdSecondPartials, State, id_derivatives};
 /// use featherbench_model::Model;
 /// use featherbench_robots::{Family, StateBatch};
 ///
@@ -66,7 +66,7 @@ impl<T: Real> IdSecondPartials<T> {
 /// let states = StateBatch::random(&model, 1, 7);
 /// let (q, v, a, weights) = (states.q(0), states.v(0), states.a(0), states.tau(0));
 /// let mut second = IdSecondPartials::new(&model.topology);
-/// IdHessian::new(&model.topology).run(&model, q, v, a, None, weights, &mut second)?;
+/// IdHessian::new(&model.topology).run(&model, State { q, v, given: a, wrenches: None }, weights, &mut second)?;
 ///
 /// // What a step of 1e-6 in v₂ does to the weighted derivatives by q.
 /// let moved = |step: f64| {
