@@ -63,7 +63,7 @@ fn with_table(more: &str, factor: f64) -> Sandbox {
     let description = featherbench_formats::neutral::read(support::project().join("datasets/models/chain-planar-2.json")).unwrap();
     let robot = Robot::new(&description, "chain", featherbench_results::ModelOrigin::Generated, 20, 1).unwrap();
     let featherbench = featherbench_engines::Featherbench::new();
-    let mut rnea = featherbench.prepare(&robot, Quantity::InverseDynamics, "rnea", &robot.states).unwrap();
+    let mut rnea = featherbench.prepare(&robot, Quantity::InverseDynamics, "rnea_packed", &robot.states).unwrap();
     rnea.run(0..20).unwrap();
     let bytes = |values: &[f64]| values.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
     let scaled = |factor: f64| rnea.read().iter().map(|x| x * factor).collect::<Vec<f64>>();

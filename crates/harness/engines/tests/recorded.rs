@@ -238,20 +238,20 @@ fn a_recorded_engine_answers_what_it_was_asked() {
     let nv = good.states.nv;
     let Outcome::Values(values) = &recording.engines[1].outcomes[1].2 else { panic!("no values") };
     let due: Vec<u64> = values.iter().map(|x| x.to_bits()).collect();
-    assert!(ask(&good, Quantity::InverseDynamics, "rnea", 0..4) == Ok(due.clone()));
-    assert!(ask(&good, Quantity::InverseDynamics, "rnea", 1..3) == Ok(due[nv..3 * nv].to_vec()));
+    assert!(ask(&good, Quantity::InverseDynamics, "rnea_packed", 0..4) == Ok(due.clone()));
+    assert!(ask(&good, Quantity::InverseDynamics, "rnea_packed", 1..3) == Ok(due[nv..3 * nv].to_vec()));
     let failed = |answer: Result<Vec<u64>, NoAnswer>| match answer {
         Err(NoAnswer::Failed(reason)) => reason,
         other => panic!("{other:?}"),
     };
-    assert!(failed(ask(&good, Quantity::InverseDynamics, "rnea", 0..5)).contains("are due"), "more states than there are");
+    assert!(failed(ask(&good, Quantity::InverseDynamics, "rnea_packed", 0..5)).contains("are due"), "more states than there are");
     assert!(failed(ask(&good, Quantity::InverseDynamics, "abacus", 0..1)).contains("was not recorded"));
     assert_eq!(ask(&good, Quantity::Bias, "a", 0..1), Err(NoAnswer::NotOffered("no such joint".into())));
     assert_eq!(failed(ask(&good, Quantity::Bias, "b", 0..1)), "a \"quoted\"\nreason, ünïcode");
     // The other robots have their own errors, which name their files.
-    assert!(failed(ask(&missing, Quantity::InverseDynamics, "rnea", 0..4)).contains("chain-planar-3.recording"));
-    assert!(failed(ask(&broken, Quantity::InverseDynamics, "rnea", 0..4)).contains("chain-planar-2.recording"));
-    assert!(failed(ask(&robot("chain:n=4"), Quantity::InverseDynamics, "rnea", 0..4)).contains("chain-planar-4"));
+    assert!(failed(ask(&missing, Quantity::InverseDynamics, "rnea_packed", 0..4)).contains("chain-planar-3.recording"));
+    assert!(failed(ask(&broken, Quantity::InverseDynamics, "rnea_packed", 0..4)).contains("chain-planar-2.recording"));
+    assert!(failed(ask(&robot("chain:n=4"), Quantity::InverseDynamics, "rnea_packed", 0..4)).contains("chain-planar-4"));
 }
 
 /// Rows have one version: answers of several versions are not one engine.

@@ -2,8 +2,8 @@
 //!
 //! The arrays are in row order, as users have them: bringing states into lanes and results out of them is part of the method.
 
-use crate::kernel::{Evaluate, Failure, Kernel};
-use featherbench_bench::{Quantity, Robot};
+use crate::kernel::{Evaluate, Failure, Kernel, not_offered};
+use featherbench_bench::{BATCH, NoAnswer, Quantity, Robot};
 use featherbench_dynamics::{Batch, BatchError, Number, RegressorMatrix};
 use featherbench_model::{Model, Topology};
 use featherbench_robots::StateBatch;
@@ -19,7 +19,6 @@ const GROUPS: usize = 8;
 struct Batched<'a, S: Number> {
     batch: Batch<'a, S>,
     call: Call<S>,
-    quantity: Quantity,
     /// q, v, and a or τ, state after state, with the numbers of each. After the last state the first ones stand again, as many as a call
     /// takes: so a call may begin at any state.
     inputs: [(Vec<S>, usize); 3],
@@ -35,33 +34,28 @@ struct Batched<'a, S: Number> {
 }
 
 /// Answers a quantity for states with these q, v, and a or τ. The body is that of a Jacobian.
-type Call<S> = for<'a> fn(&mut Batch<'a, S>, (Quantity, usize), [&[S]; 3], &mut [S]) -> Result<(), BatchError>;
+type Call<S> = for<'a> fn(&mut Batch<'a, S>, usize, [&[S]; 3], &mut [S]) -> Result<(), BatchError>;
 
 /// In double precision.
-pub(crate) fn double<'a>(robot: &'a Robot, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
-    Box::new(Batched::new(Batch::new(&robot.model), call, robot, states, quantity))
-}
-
-fn call(
-    batch: &mut Batch<'_, f64>,
-    (quantity, body): (Quantity, usize),
-    [q, v, third]: [&[f64]; 3],
-    results: &mut [f64],
-) -> Result<(), BatchError> {
-    match quantity {
-        Quantity::InverseDynamics => batch.inverse_dynamics(q, v, third, None, results),
-        Quantity::Bias => batch.bias_force(q, v, None, results),
-        Quantity::MassMatrixSparse => batch.mass_matrix(q, results),
-        Quantity::MassMatrixInverse => batch.inverse_mass_matrix(q, results),
-        Quantity::Momentum => batch.momentum(q, v, results),
-        Quantity::BodyAcceleration => batch.kinematics(q, v, third, results),
-        Quantity::BodyJacobian => batch.body_jacobian(q, body, results),
-        Quantity::InverseDynamicsDq | Quantity::InverseDynamicsDv => batch.id_derivatives(q, v, third, None, results),
-        Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv => batch.fd_derivatives(q, v, third, None, results),
-        Quantity::CoriolisMatrix => batch.coriolis_matrix(q, v, results),
-        Quantity::TorqueRegressor => batch.torque_regressor(q, v, third, results),
-        _ => batch.forward_dynamics(q, v, third, None, results),
-    }
+pub(crate) fn double<'a>(robot: &'a Robot, states: &'a StateBatch, quantity: Quantity) -> Result<Kernel<'a>, NoAnswer> {
+    let call: Call<f64> = match quantity {
+        Quantity::InverseDynamics => |batch, _, [q, v, a], out| batch.inverse_dynamics(q, v, a, None, out),
+        Quantity::Bias => |batch, _, [q, v, _], out| batch.bias_force(q, v, None, out),
+        Quantity::MassMatrixSparse => |batch, _, [q, ..], out| batch.mass_matrix(q, out),
+        Quantity::MassMatrixInverse => |batch, _, [q, ..], out| batch.inverse_mass_matrix(q, out),
+        Quantity::Momentum => |batch, _, [q, v, _], out| batch.momentum(q, v, out),
+        Quantity::BodyAcceleration => |batch, _, [q, v, a], out| batch.kinematics(q, v, a, out),
+        Quantity::BodyJacobian => |batch, body, [q, ..], out| batch.body_jacobian(q, body, out),
+        Quantity::ForwardDynamics => |batch, _, [q, v, tau], out| batch.forward_dynamics(q, v, tau, None, out),
+        Quantity::InverseDynamicsDq | Quantity::InverseDynamicsDv => |batch, _, [q, v, a], out| batch.id_derivatives(q, v, a, None, out),
+        Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv => {
+            |batch, _, [q, v, tau], out| batch.fd_derivatives(q, v, tau, None, out)
+        }
+        Quantity::CoriolisMatrix => |batch, _, [q, v, _], out| batch.coriolis_matrix(q, v, out),
+        Quantity::TorqueRegressor => |batch, _, [q, v, a], out| batch.torque_regressor(q, v, a, out),
+        _ => return Err(not_offered(quantity, BATCH)),
+    };
+    Ok(Box::new(Batched::new(Batch::new(&robot.model), call, robot, states, quantity)))
 }
 
 /// Forward dynamics in single precision throughout, states and parameters rounded to it before.
@@ -90,14 +84,14 @@ impl<'a, S: Number + Lift<S::Lanes>> Batched<'a, S> {
             (places.flat_map(|k| of(states, k).iter().map(|&x| S::from_f64(x))).collect(), each)
         };
         let inputs = [row(StateBatch::q, topology.nq()), row(StateBatch::v, topology.nv()), row(third, topology.nv())];
-        Self { batch, call, quantity, inputs, results: vec![S::zero(); each * together], each, places, together, body }
+        Self { batch, call, inputs, results: vec![S::zero(); each * together], each, places, together, body }
     }
 
     /// Evaluates `count` states from `k` on.
     fn run(&mut self, k: usize, count: usize) -> Result<(), BatchError> {
         let [q, v, third] = self.inputs.each_ref().map(|(numbers, each)| &numbers[k * each..(k + count) * each]);
         let results = &mut self.results[..count * self.each];
-        (self.call)(&mut self.batch, (self.quantity, self.body), [q, v, third], results)
+        (self.call)(&mut self.batch, self.body, [q, v, third], results)
     }
 }
 

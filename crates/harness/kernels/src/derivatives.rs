@@ -22,9 +22,6 @@ pub(crate) fn columns<'a>(robot: &'a Robot, states: &'a StateBatch) -> Kernel<'a
     written(Quantity::TorqueRegressor.size(robot), move |k, out| Ok(columns.run(point(states, k), out)?))
 }
 
-/// The method of closed recursions.
-pub(crate) const ANALYTIC: &str = "analytic";
-
 /// ∂ID/∂q or ∂ID/∂v; both and M are computed, as by other engines.
 pub(crate) fn inverse_dynamics<'a>(robot: &'a Robot, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
     let model = &robot.model;

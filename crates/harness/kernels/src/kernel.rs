@@ -3,8 +3,9 @@
 //! A kernel owns its workspace. Evaluating leaves the answer of one state where the algorithm puts it, as in any engine. Reading it into a
 //! slice is a separate step. Studies, the timing of runs and `cargo bench` all use this registry: so what is timed is what is checked.
 
+use crate::method::{self, Method};
 use crate::{batch, derivatives, factors, parallel, second_derivatives};
-use featherbench_bench::{BATCH, DENSE_LIMIT, NoAnswer, Quantity, Robot, layout};
+use featherbench_bench::{DENSE_LIMIT, NoAnswer, Quantity, Robot, layout};
 use featherbench_dynamics::{
     Aba, Batch, Bias, Crba, Energy, Ltdl, PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel,
     PackedMomentum, PackedRnea, Refined, TreeSparse,
@@ -74,148 +75,92 @@ pub(crate) fn written<'a>(size: usize, mut evaluate: impl FnMut(usize, &mut [f64
     kept(vec![0.0; size], move |out, k| evaluate(k, out), |answer, out| out.copy_from_slice(answer))
 }
 
-/// The methods of each quantity, the usual one first.
-pub(crate) fn methods(quantity: Quantity) -> &'static [&'static str] {
-    match quantity {
-        Quantity::InverseDynamics | Quantity::Bias => &["rnea", BATCH],
-        Quantity::InverseDynamicsWrench => &["rnea"],
-        Quantity::MassMatrix | Quantity::MassMatrixProbe | Quantity::MassMatrixSparse => &["crba_packed", "crba", BATCH],
-        Quantity::ForwardDynamics => &["aba", "aba_packed", "ltdl", "refined_1", "refined_2", BATCH],
-        Quantity::ForwardDynamicsSingle => &["aba", "ltdl", BATCH],
-        Quantity::KineticEnergy | Quantity::PotentialEnergy | Quantity::CenterOfMass | Quantity::Momentum => &["kinematics"],
-        Quantity::BodyPlacement | Quantity::BodyVelocity | Quantity::BodyAcceleration | Quantity::BodyJacobian => &["kinematics"],
-        Quantity::Readback => &["build"],
-        Quantity::StoredEntries => &["topology"],
-        Quantity::FactorEntries => &["ltdl"],
-        Quantity::Factorization | Quantity::Solve | Quantity::MassMatrixInverse => &["ltdl", BATCH],
-        Quantity::InverseDynamicsDq
-        | Quantity::InverseDynamicsDv
-        | Quantity::ForwardDynamicsDq
-        | Quantity::ForwardDynamicsDv
-        | Quantity::CoriolisMatrix => &[derivatives::ANALYTIC, "dual", BATCH],
-        Quantity::TorqueRegressor => &[derivatives::ANALYTIC, "columns", BATCH],
-        Quantity::InverseDynamicsSecond | Quantity::ForwardDynamicsSecond => &[derivatives::ANALYTIC, "dual"],
-    }
+/// That the method is none of ours for the quantity.
+pub(crate) fn not_offered(quantity: Quantity, method: &str) -> NoAnswer {
+    NoAnswer::NotOffered(format!("there is no own method of {} by {method}", quantity.name()))
 }
 
-/// Further methods, which only the timing study asks for. It compares their answers with those of the usual method at every state.
-fn timed_alone(quantity: Quantity) -> &'static [&'static str] {
-    match quantity {
-        Quantity::Momentum | Quantity::BodyAcceleration | Quantity::BodyJacobian => &[BATCH],
-        _ => &[],
-    }
-}
-
-/// The kernel of a quantity and method over a batch of states. Beside those of [`methods`] there are those of [`parallel::methods`].
-pub(crate) fn kernel<'a>(robot: &'a Robot, quantity: Quantity, method: &str, states: &'a StateBatch) -> Result<Kernel<'a>, NoAnswer> {
-    if parallel::methods(quantity).contains(&method) {
-        return parallel::kernel(robot, quantity, method, states);
-    }
-    if !methods(quantity).contains(&method) && !timed_alone(quantity).contains(&method) {
-        return Err(NoAnswer::NotOffered(format!("there is no own method of {} by {method}", quantity.name())));
-    }
+/// The kernel of a quantity and method over a batch of states.
+pub(crate) fn kernel<'a>(robot: &'a Robot, quantity: Quantity, method: Method, states: &'a StateBatch) -> Result<Kernel<'a>, NoAnswer> {
+    use {Method as M, Quantity as Q};
     let model = &robot.model;
-    Ok(match quantity {
-        Quantity::Factorization if method == BATCH => factors::factorization(model, states)?,
-        Quantity::Solve if method == BATCH => factors::solve(model, states)?,
-        Quantity::InverseDynamics
-        | Quantity::Bias
-        | Quantity::ForwardDynamics
-        | Quantity::MassMatrixSparse
-        | Quantity::MassMatrixInverse
-        | Quantity::Momentum
-        | Quantity::BodyAcceleration
-        | Quantity::BodyJacobian
-            if method == BATCH =>
-        {
-            batch::double(robot, states, quantity)
+    Ok(match (quantity, method) {
+        (Q::InverseDynamics, M::RneaPacked) => inverse_dynamics(model, states),
+        (Q::InverseDynamics, M::RneaParallel) => parallel::inverse_dynamics(model, states)?,
+        (Q::InverseDynamicsWrench, M::RneaPacked) => inverse_dynamics_wrench(model, states),
+        (Q::Bias, M::RneaPacked) => bias(model, states),
+        (Q::MassMatrix, M::CrbaPacked | M::Crba | M::Batch) => mass_matrix(model, crba(model, states, method)),
+        (Q::MassMatrixProbe, M::CrbaPacked | M::Crba | M::Batch) => mass_matrix_probe(model, crba(model, states, method), robot.probe()),
+        (Q::MassMatrixSparse, M::CrbaPacked | M::Crba) => mass_matrix_sparse(model, crba(model, states, method)),
+        (Q::MassMatrixSparse, M::CrbaParallel) => mass_matrix_sparse(model, parallel::crba(model, states)?),
+        (Q::ForwardDynamics, M::Aba) => forward_dynamics(model, states),
+        (Q::ForwardDynamics, M::AbaPacked) => packed_forward_dynamics(model, states),
+        (Q::ForwardDynamics, M::AbaParallel) => parallel::forward_dynamics(model, states)?,
+        (Q::ForwardDynamics, M::Ltdl) => forward_dynamics_by_factorization(model, states),
+        (Q::ForwardDynamics, M::LtdlParallel) => parallel::by_factorization(model, states)?,
+        (Q::ForwardDynamics, M::Refined1) => refined_forward_dynamics(robot, states, 1)?,
+        (Q::ForwardDynamics, M::Refined2) => refined_forward_dynamics(robot, states, 2)?,
+        (Q::ForwardDynamics, M::Twisted) => parallel::from_both_ends(model, states)?,
+        (Q::ForwardDynamicsSingle, M::Aba) => forward_dynamics_single(model, states, false),
+        (Q::ForwardDynamicsSingle, M::Ltdl) => forward_dynamics_single(model, states, true),
+        (Q::ForwardDynamicsSingle, M::Batch) => batch::single(robot, states, quantity),
+        (Q::Factorization, M::Ltdl) => factorization(model, states)?,
+        (Q::Factorization, M::LtdlParallel) => parallel::factorization(model, states)?,
+        (Q::Factorization, M::Batch) => factors::factorization(model, states)?,
+        (Q::Solve, M::Ltdl) => solve(model, states)?,
+        (Q::Solve, M::Batch) => factors::solve(model, states)?,
+        (Q::MassMatrixInverse, M::Ltdl) => mass_matrix_inverse(model, states),
+        (Q::KineticEnergy | Q::PotentialEnergy, M::Kinematics) => energy(model, states, quantity),
+        (Q::CenterOfMass, M::KinematicsPacked) => center_of_mass(model, states),
+        (Q::Momentum, M::KinematicsPacked) => momentum(model, states),
+        (Q::BodyPlacement | Q::BodyVelocity | Q::BodyAcceleration, M::KinematicsPacked) => kinematics(model, states, quantity),
+        (Q::BodyJacobian, M::KinematicsPacked) => jacobian(model, states, model.described[robot.deepest_body()]),
+        (Q::InverseDynamicsDq | Q::InverseDynamicsDv, M::Analytic) => derivatives::inverse_dynamics(robot, states, quantity),
+        (Q::ForwardDynamicsDq | Q::ForwardDynamicsDv, M::Analytic) => derivatives::forward_dynamics(robot, states, quantity),
+        (Q::CoriolisMatrix, M::Analytic) => derivatives::coriolis(robot, states),
+        (Q::TorqueRegressor, M::Analytic) => derivatives::regressor(robot, states),
+        (Q::TorqueRegressor, M::Columns) => derivatives::columns(robot, states),
+        (Q::InverseDynamicsDq | Q::InverseDynamicsDv | Q::ForwardDynamicsDq | Q::ForwardDynamicsDv | Q::CoriolisMatrix, M::Dual) => {
+            derivatives::by_duals(robot, states, quantity)
         }
-        quantity if Quantity::DERIVATIVES.contains(&quantity) && method == BATCH => batch::double(robot, states, quantity),
-        Quantity::ForwardDynamicsSingle if method == BATCH => batch::single(robot, states, quantity),
-        Quantity::InverseDynamics => inverse_dynamics(model, states),
-        Quantity::InverseDynamicsWrench => inverse_dynamics_wrench(model, states),
-        Quantity::Bias => bias(model, states),
-        Quantity::MassMatrix => mass_matrix(model, states, method),
-        Quantity::MassMatrixProbe => mass_matrix_probe(model, states, method, robot.probe()),
-        Quantity::MassMatrixSparse => mass_matrix_sparse(model, states, method),
-        Quantity::ForwardDynamics if method == "aba_packed" => packed_forward_dynamics(model, states),
-        Quantity::ForwardDynamics if method == "ltdl" => forward_dynamics_by_factorization(model, states),
-        Quantity::ForwardDynamics if method == "refined_1" => refined_forward_dynamics(robot, states, 1)?,
-        Quantity::ForwardDynamics if method == "refined_2" => refined_forward_dynamics(robot, states, 2)?,
-        Quantity::ForwardDynamics => forward_dynamics(model, states),
-        Quantity::ForwardDynamicsSingle => forward_dynamics_single(model, states, method == "ltdl"),
-        Quantity::Factorization => factorization(model, states)?,
-        Quantity::Solve => solve(model, states)?,
-        Quantity::MassMatrixInverse => mass_matrix_inverse(model, states),
-        Quantity::KineticEnergy | Quantity::PotentialEnergy => energy(model, states, quantity),
-        Quantity::CenterOfMass => center_of_mass(model, states),
-        Quantity::Momentum => momentum(model, states),
-        Quantity::BodyPlacement | Quantity::BodyVelocity | Quantity::BodyAcceleration => kinematics(model, states, quantity),
-        Quantity::BodyJacobian => jacobian(model, states, model.described[robot.deepest_body()]),
-        Quantity::Readback => constant(robot.readback()),
-        Quantity::InverseDynamicsDq | Quantity::InverseDynamicsDv if method == derivatives::ANALYTIC => {
-            derivatives::inverse_dynamics(robot, states, quantity)
-        }
-        Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv if method == derivatives::ANALYTIC => {
-            derivatives::forward_dynamics(robot, states, quantity)
-        }
-        Quantity::CoriolisMatrix if method == derivatives::ANALYTIC => derivatives::coriolis(robot, states),
-        Quantity::TorqueRegressor if method == derivatives::ANALYTIC => derivatives::regressor(robot, states),
-        Quantity::InverseDynamicsDq
-        | Quantity::InverseDynamicsDv
-        | Quantity::ForwardDynamicsDq
-        | Quantity::ForwardDynamicsDv
-        | Quantity::CoriolisMatrix => derivatives::by_duals(robot, states, quantity),
-        Quantity::TorqueRegressor => derivatives::columns(robot, states),
-        Quantity::InverseDynamicsSecond if method == derivatives::ANALYTIC => second_derivatives::inverse_dynamics(robot, states),
-        Quantity::ForwardDynamicsSecond if method == derivatives::ANALYTIC => second_derivatives::forward_dynamics(robot, states),
-        Quantity::InverseDynamicsSecond | Quantity::ForwardDynamicsSecond => second_derivatives::by_duals(robot, states, quantity),
+        (Q::InverseDynamicsSecond, M::Analytic) => second_derivatives::inverse_dynamics(robot, states),
+        (Q::ForwardDynamicsSecond, M::Analytic) => second_derivatives::forward_dynamics(robot, states),
+        (Q::InverseDynamicsSecond | Q::ForwardDynamicsSecond, M::Dual) => second_derivatives::by_duals(robot, states, quantity),
         // No fill-in: the factors stand in the places of M.
-        Quantity::StoredEntries | Quantity::FactorEntries => constant(vec![model.topology.stored() as f64]),
+        (Q::StoredEntries, M::Topology) | (Q::FactorEntries, M::Ltdl) => constant(vec![model.topology.stored() as f64]),
+        (Q::Readback, M::Build) => constant(robot.readback()),
+        (_, M::Batch) => batch::double(robot, states, quantity)?,
+        _ => return Err(not_offered(quantity, method.name())),
     })
 }
 
 /// The quantities of the timing study, the usual method first: one pass of one algorithm each, from q, v, a or τ to its result.
 pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
-    let whole = [
-        (Quantity::InverseDynamics, "rnea"),
-        (Quantity::InverseDynamics, BATCH),
-        (Quantity::Bias, "rnea"),
-        (Quantity::Bias, BATCH),
-        (Quantity::MassMatrixSparse, "crba_packed"),
-        (Quantity::MassMatrixSparse, "crba"),
-        (Quantity::MassMatrixSparse, BATCH),
-        (Quantity::Factorization, "ltdl"),
-        (Quantity::Factorization, BATCH),
-        (Quantity::Solve, "ltdl"),
-        (Quantity::Solve, BATCH),
-        (Quantity::MassMatrixInverse, "ltdl"),
-        (Quantity::MassMatrixInverse, BATCH),
-        (Quantity::ForwardDynamics, "aba"),
-        (Quantity::ForwardDynamics, "aba_packed"),
-        (Quantity::ForwardDynamics, "ltdl"),
-        (Quantity::ForwardDynamics, "refined_1"),
-        (Quantity::ForwardDynamics, "refined_2"),
-        (Quantity::ForwardDynamics, BATCH),
-        (Quantity::ForwardDynamicsSingle, BATCH),
-        (Quantity::KineticEnergy, "kinematics"),
-        (Quantity::CenterOfMass, "kinematics"),
-        (Quantity::Momentum, "kinematics"),
-        (Quantity::Momentum, BATCH),
-        (Quantity::BodyAcceleration, "kinematics"),
-        (Quantity::BodyAcceleration, BATCH),
-        (Quantity::BodyJacobian, "kinematics"),
-        (Quantity::BodyJacobian, BATCH),
+    let quantities = [
+        Quantity::InverseDynamics,
+        Quantity::Bias,
+        Quantity::MassMatrixSparse,
+        Quantity::Factorization,
+        Quantity::Solve,
+        Quantity::MassMatrixInverse,
+        Quantity::ForwardDynamics,
+        Quantity::ForwardDynamicsSingle,
+        Quantity::KineticEnergy,
+        Quantity::CenterOfMass,
+        Quantity::Momentum,
+        Quantity::BodyAcceleration,
+        Quantity::BodyJacobian,
     ];
-    // Of derivatives every method is timed.
-    let all = |quantity: Quantity| methods(quantity).iter().map(move |&method| (quantity, method));
-    let derivatives = Quantity::DERIVATIVES.into_iter().chain(Quantity::SECOND_DERIVATIVES).flat_map(all);
     // A body Jacobian has 6·nv numbers, most of them zero on big robots. Only its nonzero columns would be worth timing. An inverse is dense:
     // the check of its answers takes O(nv³) for each state of the stream, as second derivatives by dual numbers do.
     let dense = |quantity: &Quantity| {
         matches!(quantity, Quantity::BodyJacobian | Quantity::MassMatrixInverse) || Quantity::SECOND_DERIVATIVES.contains(quantity)
     };
-    whole.into_iter().chain(derivatives).filter(|(quantity, _)| !dense(quantity) || robot.states.nv <= DENSE_LIMIT).collect()
+    let quantities = quantities.into_iter().chain(Quantity::DERIVATIVES).chain(Quantity::SECOND_DERIVATIVES);
+    quantities
+        .filter(|quantity| !dense(quantity) || robot.states.nv <= DENSE_LIMIT)
+        .flat_map(|quantity| method::timed(quantity).iter().map(move |method| (quantity, method.name())))
+        .collect()
 }
 
 fn inverse_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
@@ -243,24 +188,28 @@ fn bias<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
 }
 
 /// What writes the mass matrix of state k into a tree-sparse matrix.
-type Fill<'a> = Box<dyn FnMut(&mut TreeSparse<f64>, usize) -> Result<(), Failure> + Send + 'a>;
+pub(crate) type Fill<'a> = Box<dyn FnMut(&mut TreeSparse<f64>, usize) -> Result<(), Failure> + Send + 'a>;
 
-/// The mass matrices of a batch by `crba`, `crba_packed` or the batched kernel, one state at a time.
-fn crba<'a>(model: &'a Model<f64>, states: &'a StateBatch, method: &str) -> Fill<'a> {
-    if method == "crba_packed" {
-        let packed = PackedModel::new(model);
-        let mut crba = PackedCrba::new(&packed);
-        Box::new(move |matrix, k| Ok(crba.run(&packed, states.q(k), matrix)?))
-    } else if method == BATCH {
-        let mut batch = Batch::<f64>::new(model);
-        Box::new(move |matrix, k| Ok(batch.mass_matrix(states.q(k), matrix.values_mut())?))
-    } else {
-        let mut crba = Crba::new(&model.topology);
-        Box::new(move |matrix, k| Ok(crba.run(model, states.q(k), matrix)?))
+/// The mass matrices of a batch of states, one at a time.
+fn crba<'a>(model: &'a Model<f64>, states: &'a StateBatch, method: Method) -> Fill<'a> {
+    match method {
+        Method::Crba => {
+            let mut crba = Crba::new(&model.topology);
+            Box::new(move |matrix, k| Ok(crba.run(model, states.q(k), matrix)?))
+        }
+        Method::Batch => {
+            let mut batch = Batch::<f64>::new(model);
+            Box::new(move |matrix, k| Ok(batch.mass_matrix(states.q(k), matrix.values_mut())?))
+        }
+        _ => {
+            let packed = PackedModel::new(model);
+            let mut crba = PackedCrba::new(&packed);
+            Box::new(move |matrix, k| Ok(crba.run(&packed, states.q(k), matrix)?))
+        }
     }
 }
 
-fn mass_matrix<'a>(model: &'a Model<f64>, states: &'a StateBatch, method: &str) -> Kernel<'a> {
+fn mass_matrix<'a>(model: &'a Model<f64>, fill: Fill<'a>) -> Kernel<'a> {
     let read = |matrix: &TreeSparse<f64>, dense: &mut [f64]| {
         let n = model.topology.nv();
         dense.fill(0.0);
@@ -271,20 +220,19 @@ fn mass_matrix<'a>(model: &'a Model<f64>, states: &'a StateBatch, method: &str) 
             }
         }
     };
-    kept(TreeSparse::new(&model.topology), crba(model, states, method), read)
+    kept(TreeSparse::new(&model.topology), fill, read)
 }
 
-fn mass_matrix_probe<'a>(model: &'a Model<f64>, states: &'a StateBatch, method: &str, probe: Vec<f64>) -> Kernel<'a> {
-    let (mut crba, mut matrix) = (crba(model, states, method), TreeSparse::new(&model.topology));
+fn mass_matrix_probe<'a>(model: &'a Model<f64>, mut fill: Fill<'a>, probe: Vec<f64>) -> Kernel<'a> {
+    let mut matrix = TreeSparse::new(&model.topology);
     written(6 * model.topology.nv(), move |k, out| {
-        crba(&mut matrix, k)?;
+        fill(&mut matrix, k)?;
         Ok(layout::probe(&matrix, &probe, out)?)
     })
 }
 
-fn mass_matrix_sparse<'a>(model: &'a Model<f64>, states: &'a StateBatch, method: &str) -> Kernel<'a> {
-    let read = |matrix: &TreeSparse<f64>, out: &mut [f64]| out.copy_from_slice(matrix.values());
-    kept(TreeSparse::new(&model.topology), crba(model, states, method), read)
+fn mass_matrix_sparse<'a>(model: &'a Model<f64>, fill: Fill<'a>) -> Kernel<'a> {
+    kept(TreeSparse::new(&model.topology), fill, |matrix, out| out.copy_from_slice(matrix.values()))
 }
 
 fn forward_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
@@ -337,7 +285,7 @@ fn forward_dynamics_single<'a>(model: &'a Model<f64>, states: &'a StateBatch, fa
 
 /// Whether a method needs the robot's description beside its model.
 pub fn reads_description(method: &str) -> bool {
-    matches!(method, "refined_1" | "refined_2")
+    matches!(Method::parse(method), Some(Method::Refined1 | Method::Refined2))
 }
 
 /// Refined with the residual in double-double, of the robot as its description says it.
@@ -349,7 +297,7 @@ fn refined_forward_dynamics<'a>(robot: &'a Robot, states: &'a StateBatch, steps:
 
 /// The stored numbers of the mass matrices of a batch, computed before: the time of factorizing and solving excludes computing them.
 pub(crate) fn matrices(model: &Model<f64>, states: &StateBatch) -> Result<Vec<Vec<f64>>, NoAnswer> {
-    let (mut crba, mut matrix) = (crba(model, states, methods(Quantity::MassMatrix)[0]), TreeSparse::new(&model.topology));
+    let (mut crba, mut matrix) = (crba(model, states, Method::CrbaPacked), TreeSparse::new(&model.topology));
     // Big robots use a few matrices in turn: thousands of them would not fit the memory.
     let count = states.count().min(1 + (32 << 20) / (8 * model.topology.stored().max(1)));
     (0..count)
@@ -389,7 +337,7 @@ fn solve<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>
 
 /// Factors, then the inverse from them.
 fn mass_matrix_inverse<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
-    let (mut crba, mut ltdl) = (crba(model, states, methods(Quantity::MassMatrix)[0]), Ltdl::new(&model.topology));
+    let (mut crba, mut ltdl) = (crba(model, states, Method::CrbaPacked), Ltdl::new(&model.topology));
     written(model.topology.nv() * model.topology.nv(), move |k, inverse| {
         crba(ltdl.matrix_mut(), k)?;
         ltdl.factor()?;

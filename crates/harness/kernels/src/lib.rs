@@ -6,6 +6,7 @@ mod batch;
 mod derivatives;
 mod factors;
 mod kernel;
+mod method;
 mod own;
 mod parallel;
 mod second_derivatives;

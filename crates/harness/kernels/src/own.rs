@@ -1,6 +1,7 @@
 //! Our engine, `featherbench`: the kernels of this workspace, run in this process.
 
-use crate::kernel::{Failure, Kernel, kernel, methods};
+use crate::kernel::{Failure, Kernel, kernel, not_offered};
+use crate::method::{Method, methods};
 use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Quantity, Robot};
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
@@ -36,7 +37,7 @@ impl Engine for Featherbench {
     }
 
     fn methods(&self, quantity: Quantity) -> Vec<String> {
-        methods(quantity).iter().map(|&method| method.to_owned()).collect()
+        methods(quantity).iter().map(|method| method.name().to_owned()).collect()
     }
 
     fn prepare<'a>(
@@ -47,6 +48,7 @@ impl Engine for Featherbench {
         states: &'a StateBatch,
     ) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
         states.check(&robot.model).map_err(|error| NoAnswer::Failed(error.to_string()))?;
+        let method = Method::parse(method).ok_or_else(|| not_offered(quantity, method))?;
         let kernel = kernel(robot, quantity, method, states)?;
         Ok(Box::new(Ready { kernel, size: quantity.size(robot), states: states.count(), values: Vec::new() }))
     }

@@ -30,12 +30,7 @@ use featherbench_spatial::{ArticulatedInertia, Force, Ldl3, Lift, Mat3, Motion, 
 
 pub(crate) mod free;
 mod one_dof;
-mod parallel;
 pub(crate) mod spherical;
-mod twisted;
-
-pub use parallel::ParallelAba;
-pub use twisted::Twisted;
 
 /// The workspace of the articulated-body algorithm.
 ///
@@ -53,19 +48,19 @@ pub use twisted::Twisted;
 #[derive(Clone, Debug)]
 pub struct Aba<T> {
     /// Of each body.
-    links: Vec<Link<T>>,
+    pub(crate) links: Vec<Link<T>>,
     /// Of the bodies on the path that a pass is on, by path slot ([`Joint::slot`](featherbench_model::Joint::slot)).
-    path: Vec<OnPath<T>>,
+    pub(crate) path: Vec<OnPath<T>>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Link<T> {
+pub(crate) struct Link<T> {
     /// Placement in the parent: what [`JointKind::keep`] keeps of it.
-    x: Transform<T>,
+    pub(crate) x: Transform<T>,
     /// Velocity-product acceleration c.
     c: Motion<T>,
     /// Bias force pᴬ.
-    p: Force<T>,
+    pub(crate) p: Force<T>,
     /// Of a one-dof joint: U D⁻¹, D⁻¹ and D⁻¹ u.
     u_d_inverse: Force<T>,
     d_inverse: T,
@@ -75,18 +70,18 @@ struct Link<T> {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct OnPath<T> {
+pub(crate) struct OnPath<T> {
     /// Pass 1: angular velocity ω.
-    omega: Vec3<T>,
+    pub(crate) omega: Vec3<T>,
     /// Pass 2: articulated-body inertia Iᴬ, as far as the children have been reached.
-    inertia: ArticulatedInertia<T>,
+    pub(crate) inertia: ArticulatedInertia<T>,
     /// Pass 3: classical acceleration a.
-    a: Motion<T>,
+    pub(crate) a: Motion<T>,
 }
 
 impl<T: Real> Link<T> {
     /// A link without motion and inertia.
-    fn at_rest() -> Self {
+    pub(crate) fn at_rest() -> Self {
         Self {
             x: Transform::identity(),
             c: Motion::zero(),
@@ -101,7 +96,7 @@ impl<T: Real> Link<T> {
 
 impl<T: Real> OnPath<T> {
     /// A body without motion and inertia.
-    fn at_rest() -> Self {
+    pub(crate) fn at_rest() -> Self {
         Self { omega: Vec3::zero(), inertia: ArticulatedInertia::zero(), a: Motion::zero() }
     }
 }
@@ -189,7 +184,7 @@ impl<T: Real> Aba<T> {
         model.topology.joints()[i].kind.recall(&model.placements[i], &self.links[i].x)
     }
 
-    fn expect_shapes<P: Real>(&self, inputs: &Inputs<'_, P, T>, a: &[T]) -> Result<(), DimensionError> {
+    pub(crate) fn expect_shapes<P: Real>(&self, inputs: &Inputs<'_, P, T>, a: &[T]) -> Result<(), DimensionError> {
         expect_workspace(inputs.model, self.links.len(), self.path.len())?;
         inputs.expect_shapes(a)
     }
@@ -210,17 +205,16 @@ pub(crate) struct Inputs<'a, P, T> {
 impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
     /// Pass 1, outward: `v_i = X v_p + S q̇`, `c_i`, `pᴬ = v_i ×* I v_i − f_ext`. The path begins with ω of the first body's parent.
     #[inline(always)]
-    fn outward(&self, first: usize, links: &mut [Link<T>], path: &mut [OnPath<T>]) {
-        let Self { model, q, v, .. } = *self;
+    pub(crate) fn outward(&self, first: usize, links: &mut [Link<T>], path: &mut [OnPath<T>]) {
         for (i, link) in (first..).zip(links) {
-            by_kind!(T, model.topology.joints()[i].kind, set_moving, model, i, q, v, path, link);
+            by_kind!(T, self.model.topology.joints()[i].kind, set_moving, self, i, path, link);
             self.subtract_wrench(i, link);
         }
     }
 
     /// `pᴬ −= f_ext`.
     #[inline(always)]
-    fn subtract_wrench(&self, i: usize, link: &mut Link<T>) {
+    pub(crate) fn subtract_wrench(&self, i: usize, link: &mut Link<T>) {
         if let Some(wrenches) = self.wrenches {
             link.p -= self.model.labels[i].force_to_compiled(wrenches[i]);
         }
@@ -229,7 +223,7 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
     /// Pass 2, inward: `Iᵃ = Iᴬ − U D⁻¹ Uᵀ`, `pᵃ = pᴬ + Iᵃ c + U D⁻¹ u`, `Iᴬ_p += X* Iᵃ X⁻¹`, `pᴬ_p += X* pᵃ`. The pᵃ that goes to a body
     /// before the first is added to `outside`.
     #[inline(always)]
-    fn inward(
+    pub(crate) fn inward(
         &self,
         first: usize,
         links: &mut [Link<T>],
@@ -237,8 +231,7 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
         mut outside: Option<&mut Force<T>>,
         smallest: &mut Pivot,
     ) {
-        let Self { model, tau, .. } = *self;
-        let joints = &model.topology.joints()[first..first + links.len()];
+        let joints = &self.model.topology.joints()[first..first + links.len()];
         for (k, joint) in joints.iter().enumerate().rev() {
             let (before, rest) = links.split_at_mut(k);
             let parent = match joint.parent.map(|parent| parent.checked_sub(first)) {
@@ -246,19 +239,18 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
                 Some(None) => outside.as_deref_mut(),
                 None => None,
             };
-            by_kind!(T, joint.kind, pass_to_parent, model, first + k, tau, &mut rest[0], parent, path, smallest);
+            by_kind!(T, joint.kind, pass_to_parent, self, first + k, &mut rest[0], parent, path, smallest);
         }
     }
 
     /// Pass 3, outward: `a' = X a_p + c`, `q̈ = D⁻¹ (u − Uᵀ a')`, `a_i = a' + S q̈`. The path begins with a of the first body's parent, and
     /// `a` with the dofs of the first body.
     #[inline(always)]
-    fn accelerate(&self, first: usize, links: &[Link<T>], path: &mut [OnPath<T>], a: &mut [T], smallest: &mut Pivot) {
-        let Self { model, tau, .. } = *self;
-        let joints = &model.topology.joints()[first..first + links.len()];
+    pub(crate) fn accelerate(&self, first: usize, links: &[Link<T>], path: &mut [OnPath<T>], a: &mut [T], smallest: &mut Pivot) {
+        let joints = &self.model.topology.joints()[first..first + links.len()];
         let Some(first_dof) = joints.first().map(|joint| joint.v) else { return };
         for ((i, joint), link) in (first..).zip(joints).zip(links) {
-            by_kind!(T, joint.kind, accelerate, model, i, tau, &mut a[joint.v - first_dof..], link, path, smallest);
+            by_kind!(T, joint.kind, accelerate, self, i, &mut a[joint.v - first_dof..], link, path, smallest);
         }
     }
 }
@@ -277,7 +269,8 @@ impl<P: Real, T: Real> Inputs<'_, P, T> {
 
 /// Pass 1 for one body: X, which is returned.
 #[inline(always)]
-fn place<T: Real, P: Real + Lift<T>>(kind: JointKind, model: &Model<P>, i: usize, q: &[T], link: &mut Link<T>) -> Transform<T> {
+pub(crate) fn place<T: Real, P: Real + Lift<T>>(kind: JointKind, inputs: &Inputs<'_, P, T>, i: usize, link: &mut Link<T>) -> Transform<T> {
+    let Inputs { model, q, .. } = *inputs;
     let x = kind.transform(&model.placements[i], &model.subspaces[i], &q[model.topology.joints()[i].q..]);
     kind.keep(&x, &mut link.x);
     x
@@ -285,15 +278,15 @@ fn place<T: Real, P: Real + Lift<T>>(kind: JointKind, model: &Model<P>, i: usize
 
 /// Pass 1 for one body that is placed at `x` in its parent: ω, c and pᴬ = v ×* I v.
 #[inline(always)]
-fn set_velocity<T: Real, P: Real + Lift<T>>(
+pub(crate) fn set_velocity<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
-    model: &Model<P>,
+    inputs: &Inputs<'_, P, T>,
     i: usize,
     x: &Transform<T>,
-    v: &[T],
     path: &mut [OnPath<T>],
     link: &mut Link<T>,
 ) {
+    let Inputs { model, v, .. } = *inputs;
     let (joint, subspace) = (&model.topology.joints()[i], &model.subspaces[i]);
     let joint_velocity = kind.motion(subspace, &v[joint.v..]);
     let (omega, c) = cross_joint(kind, x, path[joint.parent_slot].omega, None, joint_velocity);
@@ -306,31 +299,28 @@ fn set_velocity<T: Real, P: Real + Lift<T>>(
 #[inline(always)]
 fn set_moving<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
-    model: &Model<P>,
+    inputs: &Inputs<'_, P, T>,
     i: usize,
-    q: &[T],
-    v: &[T],
     path: &mut [OnPath<T>],
     link: &mut Link<T>,
 ) {
-    let x = place(kind, model, i, q, link);
-    set_velocity(kind, model, i, &x, v, path, link);
+    let x = place(kind, inputs, i, link);
+    set_velocity(kind, inputs, i, &x, path, link);
 }
 
 /// Pass 2 for one body: eliminates its joint, and adds Iᵃ to its parent's on the path and pᵃ to its parent's pᴬ, `parent_p`. `smallest` takes
 /// note of the pivots D.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes the workspace")]
 fn pass_to_parent<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
-    model: &Model<P>,
+    inputs: &Inputs<'_, P, T>,
     i: usize,
-    tau: &[T],
     link: &mut Link<T>,
     parent_p: Option<&mut Force<T>>,
     path: &mut [OnPath<T>],
     smallest: &mut Pivot,
 ) {
+    let Inputs { model, tau, .. } = *inputs;
     let joints = model.topology.joints();
     let (joint, dof) = (&joints[i], joints[i].v);
     // Iᴬ is complete: the children have been reached
@@ -342,7 +332,8 @@ fn pass_to_parent<T: Real, P: Real + Lift<T>>(
     let (apparent, force) = match kind {
         JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => {
             let (subspace, armature) = (model.subspaces[i].lift(), model.armature[dof].lift());
-            let (apparent, force) = one_dof::eliminate(kind, subspace, armature, tau[dof], inertia, link, dof, smallest);
+            let (apparent, force, d) = one_dof::eliminate(kind, subspace, armature, tau[dof], inertia, link);
+            smallest.note(dof, d.min_lane());
             (Some(apparent), force)
         }
         JointKind::Spherical => {
@@ -393,17 +384,16 @@ fn pass_force_to_parent<T: Real, P: Real + Lift<T>>(
 
 /// Pass 3 for one body: q̈ into the first numbers of `a`, and a = a' + S q̈.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes the outputs")]
 fn accelerate<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
-    model: &Model<P>,
+    inputs: &Inputs<'_, P, T>,
     i: usize,
-    tau: &[T],
     a: &mut [T],
     link: &Link<T>,
     path: &mut [OnPath<T>],
     smallest: &mut Pivot,
 ) {
+    let Inputs { model, tau, .. } = *inputs;
     let (joint, dof) = (&model.topology.joints()[i], model.topology.joints()[i].v);
     let carried = kind.recall(&model.placements[i], &link.x).inverse_motion(path[joint.parent_slot].a) + link.c;
     match kind {

@@ -16,10 +16,6 @@ use featherbench_model::{Axis, JointKind, Model, Topology};
 use featherbench_spatial::{CentralInertia, Force, Lift, Motion, Real, Transform, Vec3};
 use std::ops::Range;
 
-mod parallel;
-
-pub use parallel::ParallelCrba;
-
 /// The workspace of the composite-rigid-body algorithm.
 ///
 /// The plain algorithm of the book, with one force at a time, gives the same numbers but for rounding:
@@ -108,7 +104,8 @@ impl<T: Real> Crba<T> {
                 let dofs = matrix.supported(joint.v + column);
                 let position = matrix.depth(dofs.start) - 1;
                 let (rows, values) = matrix.parts_mut();
-                by_kind!(T, kind, project, forces, dofs.start, subspace, column, &rows[dofs], position, values, 0);
+                let into = Rows { rows: &rows[dofs.clone()], values, start: 0 };
+                by_kind!(T, kind, project, forces, dofs.start, subspace, column, position, into);
             }
             if let Some(parent) = joint.parent {
                 // Iᶜ_p += X* Iᶜ_i X⁻¹,  F_k = X* F_k
@@ -126,7 +123,12 @@ impl<T: Real> Crba<T> {
 
 /// `Iᶜ S_k`: the force that moves a composite body along column `k` of its joint's motion subspace.
 #[inline(always)]
-fn column_force<T: Real, P: Real + Lift<T>>(kind: JointKind, composite: &CentralInertia<T>, subspace: &Motion<P>, k: usize) -> Force<T> {
+pub(crate) fn column_force<T: Real, P: Real + Lift<T>>(
+    kind: JointKind,
+    composite: &CentralInertia<T>,
+    subspace: &Motion<P>,
+    k: usize,
+) -> Force<T> {
     let CentralInertia { mass, com: c, rotational: i } = *composite;
     let zero = T::zero();
     match kind {
@@ -142,7 +144,7 @@ fn column_force<T: Real, P: Real + Lift<T>>(kind: JointKind, composite: &Central
 
 /// One force F_k per dof k, stored component by component. `LANES` unused elements stand before the first dof.
 #[derive(Clone, Debug)]
-struct Forces<T> {
+pub(crate) struct Forces<T> {
     ang: [Vec<T>; 3],
     lin: [Vec<T>; 3],
 }
@@ -151,7 +153,7 @@ impl<T: Real> Forces<T> {
     /// How many scalars fill a register of 64 bytes; at least 1.
     const LANES: usize = if size_of::<T>() < 64 { 64 / size_of::<T>() } else { 1 };
 
-    fn new(dofs: usize) -> Self {
+    pub(crate) fn new(dofs: usize) -> Self {
         let zeros = || std::array::from_fn(|_| vec![T::zero(); Self::LANES + dofs]);
         Self { ang: zeros(), lin: zeros() }
     }
@@ -161,7 +163,7 @@ impl<T: Real> Forces<T> {
     }
 
     #[inline(always)]
-    fn set(&mut self, dof: usize, f: Force<T>) {
+    pub(crate) fn set(&mut self, dof: usize, f: Force<T>) {
         let [nx, ny, nz] = self.ang.each_mut().map(|component| &mut component[Self::LANES + dof]);
         let [fx, fy, fz] = self.lin.each_mut().map(|component| &mut component[Self::LANES + dof]);
         (*nx, *ny, *nz) = (f.ang.x, f.ang.y, f.ang.z);
@@ -171,7 +173,7 @@ impl<T: Real> Forces<T> {
     /// `F_k = X* F_k` for every dof of a range. Whole registers are filled, so a few dofs before the range change too: these are not set
     /// yet.
     #[inline(always)]
-    fn carry_to_parent(&mut self, x: &Transform<T>, dofs: Range<usize>) {
+    pub(crate) fn carry_to_parent(&mut self, x: &Transform<T>, dofs: Range<usize>) {
         self.carry::<false>(x, dofs);
     }
 
@@ -203,21 +205,26 @@ fn transform<T: Real>(x: &Transform<T>, nx: &mut [T], ny: &mut [T], nz: &mut [T]
     }
 }
 
+/// Some rows of the matrix. `values` is the flat array from number `start` on.
+pub(crate) struct Rows<'a, T> {
+    pub(crate) rows: &'a [Row],
+    pub(crate) values: &'a mut [T],
+    pub(crate) start: usize,
+}
+
 /// `M_kj = S_jᵀ F_k` for every supported dof k, whose forces begin at `first`. Dof j is column `column` of its joint's motion subspace, and
-/// stands at `position` in each of the rows. `values` is the flat array from number `start` on.
+/// stands at `position` in each of the rows.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "one joint's step reads the forces, and writes a column into rows of a part of the matrix")]
-fn project<T: Real, P: Real + Lift<T>>(
+pub(crate) fn project<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
     forces: &Forces<T>,
     first: usize,
     subspace: &Motion<P>,
     column: usize,
-    rows: &[Row],
     position: usize,
-    values: &mut [T],
-    start: usize,
+    into: Rows<'_, T>,
 ) {
+    let Rows { rows, values, start } = into;
     let (first, last) = (Forces::<T>::LANES + first, Forces::<T>::LANES + first + rows.len());
     let [nx, ny, nz] = forces.ang.each_ref().map(|component| &component[first..last]);
     let [fx, fy, fz] = forces.lin.each_ref().map(|component| &component[first..last]);
@@ -240,7 +247,7 @@ fn project<T: Real, P: Real + Lift<T>>(
 }
 
 /// An error if an argument or the workspace does not fit the model.
-fn expect_shapes<P, T: Real>(model: &Model<P>, workspace: usize, q: &[T], matrix: &TreeSparse<T>) -> Result<(), DimensionError> {
+pub(crate) fn expect_shapes<P, T: Real>(model: &Model<P>, workspace: usize, q: &[T], matrix: &TreeSparse<T>) -> Result<(), DimensionError> {
     expect_bodies(model, workspace)?;
     expect("configuration q", model.topology.nq(), q.len())?;
     matrix.expect_topology(&model.topology)

@@ -63,19 +63,19 @@ mod kinematics;
 mod ltdl;
 mod momentum;
 mod packed;
-mod parallel;
 mod parents;
 mod refined;
 mod rnea;
+mod scaling;
 mod step;
 mod tree_sparse;
 mod triangular;
 
-pub use aba::{Aba, ParallelAba, Twisted, forward_dynamics};
+pub use aba::{Aba, forward_dynamics};
 pub use batch::{Batch, BatchError, Cause, Element, Failure, NoSuchWidth, Number, Sampled, Shared, Sharing, Width, to_lanes, to_rows};
 pub use bias::{Bias, bias_force};
 pub use center_of_mass::{CenterOfMass, MassCenter, center_of_mass};
-pub use crba::{Crba, ParallelCrba, mass_matrix};
+pub use crba::{Crba, mass_matrix};
 pub use derivatives::{
     Coriolis, FdDerivatives, FdHessian, FdPartials, FdSecondPartials, IdDerivatives, IdHessian, IdPartials, IdSecondPartials, JacobianRate,
     MomentumMatrix, PARAMETERS, ParameterSensitivity, Regressor, RegressorMatrix, TreePair, coriolis_matrix, fd_derivatives, fd_hessian,
@@ -91,11 +91,12 @@ pub use instances::instances;
 pub use instances::instances_of_tests;
 pub use jacobian::{Jacobian, jacobian};
 pub use kinematics::{BodyMotion, Kinematics, forward_kinematics};
-pub use ltdl::{Ltdl, ParallelLtdl};
+pub use ltdl::Ltdl;
 pub use momentum::{CentroidalMomentum, Momentum, centroidal_momentum};
 pub use packed::{PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum, PackedRnea};
-pub use parallel::Division;
 pub use parents::{NotATree, depth_first_order};
 pub use refined::{Refined, refined_forward_dynamics};
-pub use rnea::{ParallelRnea, Rnea, inverse_dynamics};
+pub use rnea::{Rnea, inverse_dynamics};
+pub use scaling::{Division, ParallelAba, ParallelCrba, ParallelLtdl, ParallelRnea, Twisted};
+pub use step::State;
 pub use tree_sparse::TreeSparse;

@@ -40,17 +40,14 @@ use std::any::Any;
 use std::ops::Range;
 use wide::{f32x8, f32x16, f64x4, f64x8};
 
-mod blocks;
+pub(crate) mod blocks;
 mod bushy;
-mod factor;
+pub(crate) mod factor;
 mod half;
 mod inverse;
 mod lanes;
-mod parallel;
-mod registers;
+pub(crate) mod registers;
 mod solve;
-
-pub use parallel::ParallelLtdl;
 
 /// The factors of a tree-sparse matrix. Before the first factorization they are all zero, and not valid.
 ///
@@ -61,10 +58,10 @@ pub use parallel::ParallelLtdl;
 /// in place of the others. A chain of 36 has D1 = 630 and D2 = 7770. Times: `docs/kernels/ltdl.md`.
 #[derive(Clone, Debug)]
 pub struct Ltdl<T> {
-    matrix: TreeSparse<T>,
-    plan: Plan,
+    pub(crate) matrix: TreeSparse<T>,
+    pub(crate) plan: Plan,
     /// What the factorization for `f64` needs beside the matrix.
-    scratch: Vec<T>,
+    pub(crate) scratch: Vec<T>,
     /// What the selected inverse for `f64` needs: X of one path.
     square: Vec<T>,
 }

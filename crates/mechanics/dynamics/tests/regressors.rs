@@ -2,13 +2,13 @@
 
 use crate::common;
 
-use common::{distance, each_robot_and_state, larger, largest, robots, within, wrenches};
+use common::{distance, each_robot_and_state, generated, larger, largest, robots, within, wrenches};
 use featherbench_dynamics::{
-    PARAMETERS, ParameterSensitivity, Regressor, RegressorMatrix, energy, forward_dynamics, inertial_parameters, inverse_dynamics,
+    PARAMETERS, ParameterSensitivity, Regressor, RegressorMatrix, State, energy, forward_dynamics, inertial_parameters, inverse_dynamics,
     mass_matrix, torque_regressor,
 };
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement};
-use featherbench_robots::{Family, StateBatch};
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{Dual, Mat3, Real, RigidBodyInertia, Sym3, Vec3};
 use nalgebra::DMatrix;
 
@@ -110,7 +110,7 @@ fn derivatives_by_parameters_are_those_of_duals() {
         let f = wrenches(model, 2);
         let columns = PARAMETERS * model.described.len();
         let (mut a, mut found) = (vec![0.0; n], vec![0.0; n * columns]);
-        ParameterSensitivity::new(model).run(model, q, v, tau, Some(&f), &mut a, &mut found).unwrap();
+        ParameterSensitivity::new(model).run(model, State { q, v, given: tau, wrenches: Some(&f) }, &mut a, &mut found).unwrap();
         let lifted = model.lift::<Dual<f64>>();
         let duals = |x: &[f64]| x.iter().map(|&x| Dual::constant(x)).collect::<Vec<_>>();
         let lifted_f: Vec<_> = f.iter().map(|f| f.lift::<Dual<f64>>()).collect();
@@ -226,7 +226,7 @@ fn ranks_of_the_torque_regressor() {
     }
     // A floating base: ten for the base as well, and its rows alone tell as much.
     for family in ["quadruped", "chain:n=6,layout=spatial,base=free"] {
-        let model: Model<f64> = Model::build(&Family::parse(family).unwrap().generate().unwrap()).unwrap();
+        let model = generated(family);
         assert_eq!(rank(&model, true), 7 * (model.topology.nv() - 6) + 10, "{family}");
     }
 }

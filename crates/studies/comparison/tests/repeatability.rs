@@ -137,7 +137,7 @@ fn noise_below_every_bound_is_a_failing_row_with_its_size() {
     // Two answers later: 4 ε is 4 to 8 units in the last place, and one more by rounding.
     assert!(row.value.is_some_and(|ulps| (2.0..=10.0).contains(&ulps)), "{row:#?}");
     assert!(row.reason.contains("asked twice for bias") && row.reason.contains("units in the last place"), "{}", row.reason);
-    assert!(robots().iter().any(|robot| robot.name == row.robot) && ["rnea", "batch"].contains(&row.method.as_str()));
+    assert!(robots().iter().any(|robot| robot.name == row.robot) && ["rnea_packed", "batch"].contains(&row.method.as_str()));
 }
 
 #[test]

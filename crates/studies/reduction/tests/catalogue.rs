@@ -112,7 +112,7 @@ fn gates(robot: &Robot, high: f64) -> Gates {
     let key = RangeKey {
         engine: name,
         version,
-        method: "rnea".into(),
+        method: "rnea_packed".into(),
         quantity: "id".into(),
         robot: robot.name.clone(),
         metric: "scaled".into(),
@@ -134,7 +134,7 @@ fn finding(id: &str, robot: &Robot) -> Finding {
     let row = Row {
         study: "agreement".into(),
         quantity: "id".into(),
-        method: "rnea".into(),
+        method: "rnea_packed".into(),
         metric: "scaled".into(),
         states: robot.states.cases[0].name().into(),
         verdict: Verdict::Deviation,

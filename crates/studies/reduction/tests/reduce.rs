@@ -98,7 +98,7 @@ fn a_planted_fault_is_reduced_to_its_bodies() {
         let engine = Faulty { inner: Featherbench::new(), alter, lost: false };
         for robot in [faulty(alter, "fixed"), faulty(alter, "free")].concat() {
             for (quantity, method) in
-                [(Quantity::InverseDynamics, "rnea"), (Quantity::MassMatrix, "crba"), (Quantity::ForwardDynamics, "aba")]
+                [(Quantity::InverseDynamics, "rnea_packed"), (Quantity::MassMatrix, "crba"), (Quantity::ForwardDynamics, "aba")]
             {
                 let what = format!("{} {method}", robot.name);
                 let given = severity(&engine, &robot, quantity, method).unwrap();

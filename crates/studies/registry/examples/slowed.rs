@@ -75,10 +75,10 @@ impl Evaluation for Wasting<'_> {
 
 fn kernels(_: &Robot) -> Vec<(Quantity, &'static str)> {
     vec![
-        (Quantity::InverseDynamics, "rnea"),
+        (Quantity::InverseDynamics, "rnea_packed"),
         (Quantity::MassMatrixSparse, "crba"),
         (Quantity::ForwardDynamics, "aba"),
-        (Quantity::Momentum, "kinematics"),
+        (Quantity::Momentum, "kinematics_packed"),
     ]
 }
 

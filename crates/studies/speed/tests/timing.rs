@@ -21,8 +21,9 @@ fn settings(engines: &[&str]) -> TimingSettings {
 }
 
 fn study() -> Timing {
-    let kernels =
-        |_: &Robot| vec![(Quantity::InverseDynamics, "rnea"), (Quantity::ForwardDynamics, "aba"), (Quantity::ForwardDynamics, "ltdl")];
+    let kernels = |_: &Robot| {
+        vec![(Quantity::InverseDynamics, "rnea_packed"), (Quantity::ForwardDynamics, "aba"), (Quantity::ForwardDynamics, "ltdl")]
+    };
     Timing { settings: settings(&["double", "absent"]), kernels }
 }
 
@@ -64,7 +65,7 @@ fn everyone_has_times_ratios_and_intervals_beside_a_control() {
         assert_eq!(of(rows, "featherbench", quantity, "control").len(), 2);
         for row in of(rows, "double", quantity, "ratio") {
             assert!(row.ci_low <= row.value && row.value <= row.ci_high && row.ci_low.is_some());
-            assert_eq!(row.reference, if quantity == "id" { "featherbench rnea" } else { "featherbench aba" });
+            assert_eq!(row.reference, if quantity == "id" { "featherbench rnea_packed" } else { "featherbench aba" });
         }
         assert!(of(rows, "double", quantity, "worst_error").iter().all(|row| row.verdict == Verdict::Pass));
     }
@@ -162,7 +163,7 @@ fn a_wrong_answer_at_one_state_costs_its_times_and_no_others() {
         }
     }));
     let failed: Vec<_> = rows.iter().filter(|row| row.verdict == Verdict::Fail).collect();
-    assert_eq!(failed.iter().map(|row| row.method.as_str()).collect::<Vec<_>>(), ["rnea", "batch"]);
+    assert_eq!(failed.iter().map(|row| row.method.as_str()).collect::<Vec<_>>(), ["rnea_packed", "batch"]);
     assert!(failed.iter().all(|row| (&*row.engine, &*row.quantity, &*row.metric) == ("double", "id", "worst_error")));
     for row in of(&rows, "double", "id", "ns_per_call").into_iter().chain(of(&rows, "double", "id", "ratio")) {
         assert!(!row.valid && row.reason.starts_with("a wrong answer has no time"), "{}", row.reason);

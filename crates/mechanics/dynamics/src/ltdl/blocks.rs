@@ -8,17 +8,17 @@ use featherbench_spatial::Real;
 
 /// Consecutive dofs, each the only child of the one before it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Block {
+pub(crate) struct Block {
     /// The first dof.
-    pub(super) first: usize,
+    pub(crate) first: usize,
     /// How many dofs.
-    pub(super) size: usize,
+    pub(crate) size: usize,
     /// The strict ancestors of the first dof.
-    pub(super) shared: usize,
+    pub(crate) shared: usize,
     /// One past the last dof that the block supports.
-    pub(super) end: usize,
+    pub(crate) end: usize,
     /// Where the row of that last dof ends.
-    pub(super) stored_end: usize,
+    pub(crate) stored_end: usize,
 }
 
 impl Block {
@@ -31,16 +31,16 @@ impl Block {
 
 /// What is known from the topology.
 #[derive(Clone, Debug)]
-pub(super) struct Plan {
+pub(crate) struct Plan {
     /// From the root.
-    pub(super) blocks: Vec<Block>,
+    pub(crate) blocks: Vec<Block>,
     size: usize,
     /// The stored numbers.
     stored: usize,
     /// The length of the longest row.
     pub(super) deepest: usize,
     /// What goes a dof at a time.
-    pub(super) single: Single,
+    pub(crate) single: Single,
 }
 
 impl Plan {
@@ -66,8 +66,8 @@ impl Plan {
 
 /// What goes a dof at a time: a factorization, and the parts of a solution.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Single {
-    pub(super) factor: bool,
+pub(crate) struct Single {
+    pub(crate) factor: bool,
     pub(super) from_leaves: bool,
     pub(super) from_root: bool,
 }

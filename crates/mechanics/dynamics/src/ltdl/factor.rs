@@ -34,7 +34,7 @@ pub(super) fn factor(matrix: &mut TreeSparse<f64>, plan: &Plan, coefficients: &m
 }
 
 /// Factors the rows of these blocks. All rows below them stand in `values` too, factored or in the list. `coefficients` has an entry per row.
-pub(super) fn factor_blocks(rows: &[Row], values: &mut [f64], blocks: &[Block], coefficients: &mut [[f64; LANES]]) -> Pivot {
+pub(crate) fn factor_blocks(rows: &[Row], values: &mut [f64], blocks: &[Block], coefficients: &mut [[f64; LANES]]) -> Pivot {
     let mut smallest = Pivot::none();
     for block in blocks.iter().rev() {
         if block.alone() {

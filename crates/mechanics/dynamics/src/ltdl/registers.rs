@@ -3,7 +3,7 @@
 use wide::f64x8;
 
 /// Numbers in a register.
-pub(super) const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
 
 /// The numbers at `at …`.
 #[inline(always)]

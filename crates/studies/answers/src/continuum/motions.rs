@@ -54,7 +54,7 @@ fn free(name: &'static str, n: usize) -> Case {
         };
         let (before, energy) = state(&s, &rate)?;
         let mut motion = Motion::new(&robot, |_| Vec::new());
-        DormandPrince::new(topology).run(&mut motion, 0.0, 0.5, &mut s, &mut rate, &tolerance(), |_, _, _| ()).map_err(failed)?;
+        DormandPrince::new(topology).run(&mut motion, [0.0, 0.5], &mut s, &mut rate, &tolerance(), |_, _, _| ()).map_err(failed)?;
         let (after, left) = state(&s, &rate)?;
         let moved = before.iter().zip(&after).flat_map(|(a, b)| (*b - *a).to_array());
         let size = largest(before.iter().flat_map(|part| part.to_array()));

@@ -15,8 +15,8 @@ robot = Robot.from_json(Path(__file__).with_name(\"robot.json\"))
     end: "",
     armature: "",
     answers: &[
-        ("id", "rnea", "robot.inverse_dynamics(q, v, a)"),
-        ("bias", "rnea", "robot.bias_force(q, v)"),
+        ("id", "rnea_packed", "robot.inverse_dynamics(q, v, a)"),
+        ("bias", "rnea_packed", "robot.bias_force(q, v)"),
         ("mass_matrix", "crba", "robot.mass_matrix(q)"),
         ("fd", "aba", "robot.forward_dynamics(q, v, tau)"),
         ("fd", "ltdl", "robot.solve(q, tau - robot.bias_force(q, v))"),

@@ -32,15 +32,15 @@ const fn parallel(quantity: Quantity, method: &'static str, over: &'static str, 
 /// time, so their answers differ by rounding. The parallel articulated-body algorithm and factorization have the serial operations in the
 /// same order.
 pub(super) const METHODS: [Own; 14] = [
-    serial(Quantity::InverseDynamics, "rnea"),
-    serial(Quantity::Momentum, "kinematics"),
+    serial(Quantity::InverseDynamics, "rnea_packed"),
+    serial(Quantity::Momentum, "kinematics_packed"),
     serial(Quantity::ForwardDynamics, "aba"),
     compared(Quantity::ForwardDynamics, "ltdl", "aba"),
     compared(Quantity::ForwardDynamics, "aba_packed", "aba"),
     serial(Quantity::MassMatrixSparse, "crba_packed"),
     serial(Quantity::Factorization, "ltdl"),
     serial(Quantity::Solve, "ltdl"),
-    parallel(Quantity::InverseDynamics, "rnea_parallel", "rnea", false),
+    parallel(Quantity::InverseDynamics, "rnea_parallel", "rnea_packed", false),
     parallel(Quantity::ForwardDynamics, "aba_parallel", "aba", true),
     parallel(Quantity::ForwardDynamics, "twisted", "aba", false),
     parallel(Quantity::ForwardDynamics, "ltdl_parallel", "ltdl", false),

@@ -311,13 +311,13 @@ fn errors(row: &Row, model: &RobotInfo, random: &mut Random) -> Vec<Row> {
 
 fn times(run: &RunInfo, model: &RobotInfo, random: &mut Random, rows: &mut Vec<Row>) {
     const ALGORITHMS: [(&str, &str, f64, f64); 7] = [
-        ("id", "rnea", 22.0, 1.0),
+        ("id", "rnea_packed", 22.0, 1.0),
         ("fd", "aba", 55.0, 1.0),
         ("fd", "ltdl", 17.0, 1.7),
         ("mass_matrix_sparse", "crba", 14.0, 1.55),
         ("factorization", "ltdl", 2.0, 1.9),
         ("solve", "ltdl", 1.5, 1.6),
-        ("body_placement", "kinematics", 9.0, 1.0),
+        ("body_placement", "kinematics_packed", 9.0, 1.0),
     ];
     for (algorithm, method, constant, exponent) in ALGORITHMS {
         for cache in ["stream", "hot"] {

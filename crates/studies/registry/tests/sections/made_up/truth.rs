@@ -27,7 +27,7 @@ const SUBJECTS: [(&str, &str, &str); 10] = [
     ("pinocchio", "aba_world", "fd"),
     ("mujoco", "forward", "fd"),
     ("drake", "aba", "fd"),
-    ("featherbench", "rnea", "id"),
+    ("featherbench", "rnea_packed", "id"),
     ("drake", "inverse_dynamics", "id"),
     ("featherbench", "crba", "mass_matrix"),
     ("mujoco", "crb", "mass_matrix"),

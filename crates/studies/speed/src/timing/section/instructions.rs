@@ -37,7 +37,7 @@ const FIGURES: [(&str, &str, &[&str]); 2] = [
 ///
 /// let row = |robot: &str, nv: u64| Row { robot: robot.into(), nv: Some(nv), ..Row::default() };
 /// let rows = [row("short", 10), row("long", 100)];
-/// let counts = [("short", 4000), ("long", 40_000)].map(|(robot, number)| (("id/rnea".to_owned(), robot.to_owned()), number));
+/// let counts = [("short", 4000), ("long", 40_000)].map(|(robot, number)| (("id/rnea_packed".to_owned(), robot.to_owned()), number));
 /// let figures = instructions(&RunInfo::default(), &rows, &counts.into());
 /// assert_eq!(figures.iter().map(|figure| figure.name).collect::<Vec<_>>(), ["instructions-dynamics"]);
 /// ```

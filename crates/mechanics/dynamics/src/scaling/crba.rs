@@ -1,6 +1,6 @@
 //! The joint-space inertia matrix of one state on all cores, sub-tree by sub-tree.
 //!
-//! Source, frames, shapes and units: those of `crba.rs`, whose functions for one joint it calls. The tree is divided by `parallel.rs`. The rows
+//! Source, frames, shapes and units: those of `crba.rs`, whose functions for one joint it calls. The tree is divided by `scaling/mod.rs`. The rows
 //! of a task's dofs are consecutive. The task computes those of its parts: it carries their forces together through the trunk to the world.
 //! Dofs of the trunk stand between them; their forces are zero, and step 3 writes their rows.
 //!
@@ -13,8 +13,8 @@
 //! Cost: O(n + Σ d_k), the operations of [`crate::Crba`] and those on the zeros of step 2. Beside what `rayon` itself allocates, a call allocates
 //! four lists of slices, with one entry per task each.
 
-use super::{Forces, column_force, project};
-use crate::parallel::{Part, Piece, Plan, Task};
+use super::{Part, Piece, Plan, Task};
+use crate::crba::{Forces, Rows, column_force, expect_shapes, project};
 use crate::step::by_kind;
 use crate::tree_sparse::Row;
 use crate::{DimensionError, TreeSparse};
@@ -113,7 +113,7 @@ impl<T: Real> ParallelCrba<T> {
     #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], matrix: &mut TreeSparse<T>) -> Result<(), DimensionError> {
         let Self { plan, pieces, composites, placements, trunk, trunk_rows, carried, forces } = self;
-        super::expect_shapes(model, composites.len(), q, matrix)?;
+        expect_shapes(model, composites.len(), q, matrix)?;
         plan.expect(&model.topology)?;
 
         for body in trunk.iter_mut() {
@@ -231,8 +231,8 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
                     for dof in own.clone() {
                         forces.set(dof - task.dofs.start, Force::zero());
                     }
-                    let supported = own.start..self.rows[own.start].end.min(task.dofs.end);
-                    self.carry(index, &supported, true, task, forces, values, start);
+                    let rows = &self.rows[own.start..self.rows[own.start].end.min(task.dofs.end)];
+                    self.carry(index, Supported { first: own.start - task.dofs.start, rows, own: true }, forces, values, start);
                 }
             }
         }
@@ -240,7 +240,7 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
         let mut above = topology.joints()[task.bodies.start].parent;
         while let Some(index) = above {
             let end = self.rows[dofs(topology, index).start].end.min(task.dofs.end);
-            self.carry(index, &(task.dofs.start..end), false, task, forces, values, start);
+            self.carry(index, Supported { first: 0, rows: &self.rows[task.dofs.start..end], own: false }, forces, values, start);
             above = topology.joints()[index].parent;
         }
         for dof in plan.parts[task.parts.clone()].iter().flat_map(|part| part.dofs.clone()) {
@@ -249,25 +249,12 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
     }
 
     /// The entries of a task's dofs in the columns of a body of the trunk. Then their forces go to its parent.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a body's step reads and carries the forces, and writes into rows of a part of the matrix"
-    )]
-    fn carry(
-        &self,
-        index: usize,
-        supported: &Range<usize>,
-        own: bool,
-        task: &Task,
-        forces: &mut Forces<T>,
-        values: &mut [T],
-        start: usize,
-    ) {
-        let first = supported.start - task.dofs.start;
-        self.set_columns(index, forces, Supported { first, rows: &self.rows[supported.clone()], own }, values, start);
+    fn carry(&self, index: usize, supported: Supported<'_>, forces: &mut Forces<T>, values: &mut [T], start: usize) {
+        let dofs = supported.first..supported.first + supported.rows.len();
+        self.set_columns(index, forces, supported, values, start);
         let place = self.trunk.binary_search_by_key(&index, |body| body.index);
         if let Some(body) = place.ok().map(|place| &self.trunk[place]).filter(|body| body.parent.is_some()) {
-            forces.carry_to_parent(&body.x, first..supported.end - task.dofs.start);
+            forces.carry_to_parent(&body.x, dofs);
         }
     }
 
@@ -308,7 +295,8 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
             let skipped = if supported.own { column } else { 0 };
             let (first, rows) = (supported.first + skipped, &supported.rows[skipped..]);
             let position = self.model.topology.dof_depth(joint.v + column) - 1;
-            by_kind!(T, joint.kind, project, forces, first, subspace, column, rows, position, values, start);
+            let into = Rows { rows, values: &mut *values, start };
+            by_kind!(T, joint.kind, project, forces, first, subspace, column, position, into);
         }
     }
 }

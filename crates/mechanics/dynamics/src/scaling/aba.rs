@@ -1,6 +1,6 @@
 //! The articulated-body algorithm for one state on all cores, sub-tree by sub-tree.
 //!
-//! Source, frames, shapes and units: those of `aba.rs`, whose recursions it calls. The tree is divided by `parallel.rs`. Each part
+//! Source, frames, shapes and units: those of `aba.rs`, whose recursions it calls. The tree is divided by `scaling/mod.rs`. Each part
 //! has a stand-in for its parent: it brings ω and a of the parent into the part, and collects the Iᵃ and pᵃ that the part adds to the parent.
 //! Each task has path slots of its own.
 //!
@@ -14,9 +14,9 @@
 //! Cost: O(n), the operations of [`Aba`]. Beside what `rayon` itself allocates, a call allocates three lists of slices,
 //! with one entry per task each.
 
-use super::{Inputs, Link, OnPath};
+use super::{Piece, Plan};
+use crate::aba::{Inputs, Link, OnPath};
 use crate::error::Pivot;
-use crate::parallel::{Piece, Plan};
 use crate::{Aba, Error};
 use featherbench_model::{Model, Topology};
 use featherbench_spatial::{ArticulatedInertia, Force, Lift, Real};

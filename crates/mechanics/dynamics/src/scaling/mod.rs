@@ -14,6 +14,18 @@
 //! serial ones: sums over children begin with the last child. So answers are the same to the bit, with any number of threads.
 //! The trunk is the serial part of their work. On a chain everything is one part, and nothing is gained; see [`Twisted`](crate::Twisted).
 
+mod aba;
+mod crba;
+mod ltdl;
+mod rnea;
+mod twisted;
+
+pub use aba::ParallelAba;
+pub use crba::ParallelCrba;
+pub use ltdl::ParallelLtdl;
+pub use rnea::ParallelRnea;
+pub use twisted::Twisted;
+
 use crate::DimensionError;
 use crate::error::expect;
 use featherbench_model::Topology;
@@ -26,16 +38,16 @@ const TASKS: u64 = 32;
 
 /// A tree divided into a trunk and parts.
 #[derive(Clone, Debug)]
-pub(crate) struct Plan {
+struct Plan {
     /// The bodies of the trunk and the parts, from the root.
-    pub(crate) order: Vec<Piece>,
-    pub(crate) parts: Vec<Part>,
-    pub(crate) tasks: Vec<Task>,
+    order: Vec<Piece>,
+    parts: Vec<Part>,
+    tasks: Vec<Task>,
 }
 
 /// A body of the trunk, or a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Piece {
+enum Piece {
     /// The body's index.
     Trunk(usize),
     /// The part's index.
@@ -44,28 +56,28 @@ pub(crate) enum Piece {
 
 /// A sub-tree.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Part {
+struct Part {
     /// The body of the trunk that carries it, or `None` for the world.
-    pub(crate) parent: Option<usize>,
+    parent: Option<usize>,
     /// Its bodies, the root first.
-    pub(crate) bodies: Range<usize>,
+    bodies: Range<usize>,
     /// Their dofs.
-    pub(crate) dofs: Range<usize>,
+    dofs: Range<usize>,
 }
 
 /// Consecutive parts, with the bodies of the trunk between them.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Task {
-    pub(crate) parts: Range<usize>,
-    pub(crate) bodies: Range<usize>,
-    pub(crate) dofs: Range<usize>,
+struct Task {
+    parts: Range<usize>,
+    bodies: Range<usize>,
+    dofs: Range<usize>,
     /// The path slots up to the last that a part uses.
-    pub(crate) slots: usize,
+    slots: usize,
 }
 
 impl Plan {
     /// Divides a tree. `weight(d)` is the work on a dof that has d dofs on its path, itself included.
-    pub(crate) fn new(topology: &Topology, weight: impl Fn(u64) -> u64) -> Self {
+    fn new(topology: &Topology, weight: impl Fn(u64) -> u64) -> Self {
         let joints = topology.joints();
         let count = joints.len();
         // Weight and last body of each sub-tree, its children, and whether it branches.
@@ -106,7 +118,7 @@ impl Plan {
     }
 
     /// The bodies of the trunk, from the root.
-    pub(crate) fn trunk(&self) -> impl DoubleEndedIterator<Item = usize> + '_ {
+    fn trunk(&self) -> impl DoubleEndedIterator<Item = usize> + '_ {
         self.order.iter().filter_map(|piece| match piece {
             Piece::Trunk(body) => Some(*body),
             Piece::Part(_) => None,
@@ -114,7 +126,7 @@ impl Plan {
     }
 
     /// An error if the tree has another shape.
-    pub(crate) fn expect(&self, topology: &Topology) -> Result<(), DimensionError> {
+    fn expect(&self, topology: &Topology) -> Result<(), DimensionError> {
         let joints = topology.joints();
         let fits = |part: &&Part| {
             let root = joints.get(part.bodies.start);
@@ -124,12 +136,12 @@ impl Plan {
     }
 
     /// An array with one entry per part, divided between the tasks.
-    pub(crate) fn divide_parts<'a, X>(&self, array: &'a mut [X]) -> Vec<&'a mut [X]> {
+    fn divide_parts<'a, X>(&self, array: &'a mut [X]) -> Vec<&'a mut [X]> {
         self.divide(array, |task| task.parts.clone())
     }
 
     /// An array divided between the tasks: `range` says what of it belongs to a task. What is between the tasks is left out.
-    pub(crate) fn divide<'a, X>(&self, array: &'a mut [X], range: impl Fn(&Task) -> Range<usize>) -> Vec<&'a mut [X]> {
+    fn divide<'a, X>(&self, array: &'a mut [X], range: impl Fn(&Task) -> Range<usize>) -> Vec<&'a mut [X]> {
         let (mut rest, mut done) = (array, 0);
         let mut slices = Vec::with_capacity(self.tasks.len());
         for task in &self.tasks {

@@ -1,19 +1,18 @@
 //! The factorization `M = LᵀDL` for `f64` on all cores, sub-tree by sub-tree.
 //!
-//! Source, shapes and units: those of `ltdl.rs`, whose kernel of `ltdl/factor.rs` it calls. The tree is divided by `parallel.rs`. A row of L needs
+//! Source, shapes and units: those of `ltdl.rs`, whose kernel of `ltdl/factor.rs` it calls. The tree is divided by `scaling/mod.rs`. A row of L needs
 //! the rows below it only. So the rows of a part are factored by themselves, in a copy with padding, and then the rows of the trunk.
 //! Cost: O(Σ d_k²), the operations of [`Ltdl`], and one copy of the rows of the parts each way. Memory beside the matrix: the rows of the largest
 //! part of each task, and 144 bytes per dof. Beside what `rayon` allocates, a call allocates one list of slices, with one entry per task.
 //! Solutions are those of [`Ltdl`], on one core.
 
-use super::Ltdl;
-use super::blocks::Block;
-use super::factor::factor_blocks;
-use super::registers::LANES;
+use super::{Part, Plan, Task};
 use crate::error::Pivot;
-use crate::parallel::{Part, Plan, Task};
+use crate::ltdl::blocks::Block;
+use crate::ltdl::factor::factor_blocks;
+use crate::ltdl::registers::LANES;
 use crate::tree_sparse::{PADDING, Row};
-use crate::{Error, NotPositiveDefinite, TreeSparse};
+use crate::{Error, Ltdl, NotPositiveDefinite, TreeSparse};
 use featherbench_model::Topology;
 use rayon::prelude::*;
 use std::ops::Range;
