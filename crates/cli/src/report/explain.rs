@@ -18,7 +18,7 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
     if let Some(other) = rows.iter().find(|row| row.cell != first.cell) {
         return Err(Fail::input(format!("'{}' begins more than one cell: {}, {}; give more digits", args.cell, first.cell, other.cell)));
     }
-    let quantity = Quantity::parse(&first.quantity).map_or("", describe);
+    let quantity = Quantity::parse(&first.quantity).map_or("", Quantity::words);
     say!("cell      {}", first.cell);
     say!("study     {}", first.study);
     say!("robot     {} ({}; nv {}, depth {})", first.robot, first.family, count(first.nv), count(first.depth));
@@ -64,40 +64,4 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
 
 fn count(number: Option<u64>) -> String {
     number.map_or_else(|| "–".into(), |number| number.to_string())
-}
-
-/// What a quantity is, in a phrase.
-fn describe(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::InverseDynamics => "inverse dynamics τ = M a + h",
-        Quantity::InverseDynamicsWrench => "inverse dynamics under external wrenches",
-        Quantity::Bias => "bias force h, gravity included",
-        Quantity::MassMatrix => "joint-space inertia matrix M",
-        Quantity::MassMatrixProbe => "M times four vectors, its diagonal and its last row",
-        Quantity::MassMatrixSparse => "M in the tree-sparse layout",
-        Quantity::ForwardDynamics => "forward dynamics a = M⁻¹(τ − h)",
-        Quantity::ForwardDynamicsSingle => "forward dynamics in single precision",
-        Quantity::KineticEnergy => "kinetic energy",
-        Quantity::PotentialEnergy => "potential energy",
-        Quantity::CenterOfMass => "centre of mass",
-        Quantity::Momentum => "centroidal momentum",
-        Quantity::BodyPlacement => "placement of each body in the world",
-        Quantity::BodyVelocity => "velocity of each body's origin, world axes",
-        Quantity::BodyAcceleration => "classical acceleration of each body's origin, world axes",
-        Quantity::BodyJacobian => "Jacobian of the deepest body, world axes",
-        Quantity::Readback => "inertias and placements that the engine holds after building the robot",
-        Quantity::StoredEntries => "stored numbers of the sparse mass matrix",
-        Quantity::Factorization => "factors of M = LᵀDL",
-        Quantity::FactorEntries => "numbers of the engine's own triangular factor of M",
-        Quantity::Solve => "M⁻¹τ with given factors",
-        Quantity::MassMatrixInverse => "M⁻¹",
-        Quantity::InverseDynamicsDq => "∂ID/∂q on the tangent space of the configurations",
-        Quantity::InverseDynamicsDv => "∂ID/∂v",
-        Quantity::ForwardDynamicsDq => "∂FD/∂q on the tangent space of the configurations",
-        Quantity::ForwardDynamicsDv => "∂FD/∂v",
-        Quantity::CoriolisMatrix => "Coriolis matrix C with Ṁ = C + Cᵀ",
-        Quantity::TorqueRegressor => "torque regressor Y, τ − armature·a = Y π",
-        Quantity::InverseDynamicsSecond => "second derivatives of weighted inverse dynamics",
-        Quantity::ForwardDynamicsSecond => "second derivatives of weighted forward dynamics",
-    }
 }

@@ -74,7 +74,7 @@ pub fn start(library: &Path, limits: Limits, core: Option<usize>) -> Result<Orac
 
 fn ask(engine: &dyn Engine, robot: &Robot, quantity: Quantity, method: &str) -> Result<Vec<f64>, NoAnswer> {
     let mut prepared = engine.prepare(robot, quantity, method, &robot.states)?;
-    prepared.run(0..quantity.states(robot.states.count()))?;
+    prepared.run(0..robot.asked(quantity))?;
     Ok(prepared.read().to_vec())
 }
 

@@ -105,7 +105,7 @@ fn robot(words: &str) -> Robot {
 fn values(engine: &dyn Engine, robot: &Robot, quantity: Quantity) -> Result<Vec<f64>, NoAnswer> {
     let method = engine.methods(quantity)[0].clone();
     let mut ready = engine.prepare(robot, quantity, &method, &robot.states)?;
-    ready.run(0..quantity.states(robot.states.count()))?;
+    ready.run(0..robot.asked(quantity))?;
     Ok(ready.read().to_vec())
 }
 

@@ -71,7 +71,7 @@ impl Recording {
     pub fn to_bytes(&self, robot: &Robot) -> Vec<u8> {
         let mut writer = Writer { bytes: Vec::new(), parts: 0 };
         let head = json!({"recording": FORMAT, "model": robot.name, "robot": robot.hash, "states": robot.states.count()});
-        writer.part(head, &plain(&states(&robot.states)));
+        writer.part(head, &plain(&states(robot)));
         let topology = &robot.model.topology;
         let mut bases: HashMap<Quantity, Vec<f64>> = HashMap::new();
         for engine in &self.engines {
@@ -123,7 +123,7 @@ impl Recording {
         }
         let recorded = from_plain(raw).ok_or("the states are damaged")?;
         let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-        if head["robot"] != robot.hash.as_str() || bits(&recorded) != bits(&states(&robot.states)) {
+        if head["robot"] != robot.hash.as_str() || bits(&recorded) != bits(&states(robot)) {
             return Err(format!("it was recorded for another version of '{}' or of its states", robot.name));
         }
         let mut engines: Vec<EngineRecording> = Vec::new();
@@ -212,8 +212,9 @@ fn identity(header: &Value) -> Result<Identity, String> {
 }
 
 /// The numbers of a batch that every engine is asked about: q, v, a, tau, and the wrenches of the states that `id_wrench` takes.
-fn states(states: &StateBatch) -> Vec<f64> {
-    let wrenched = Quantity::InverseDynamicsWrench.states(states.count()) * 6 * states.bodies;
+fn states(robot: &Robot) -> Vec<f64> {
+    let states = &robot.states;
+    let wrenched = robot.asked(Quantity::InverseDynamicsWrench) * 6 * states.bodies;
     let parts: [&[f64]; 5] = [&states.q, &states.v, &states.a, &states.tau, &states.wrench[..wrenched]];
     parts.concat()
 }

@@ -1,32 +1,16 @@
 //! The shapes of blocks, as in the tables of `oracles/PROTOCOL.md`. Runs, the conformance test and native oracles all use them.
 
-use featherbench_bench::{Quantity, Robot, layout};
+use featherbench_bench::{Quantity, Robot};
 use featherbench_protocol::Message;
 
 /// The shape of an answer about this number of states: `[count, …]`.
 pub(crate) fn of_value(quantity: Quantity, robot: &Robot, count: usize) -> Vec<usize> {
-    let (nv, bodies) = (robot.states.nv, robot.description.bodies.len());
-    let per_state = match quantity {
-        Quantity::MassMatrix
-        | Quantity::MassMatrixInverse
-        | Quantity::InverseDynamicsDq
-        | Quantity::InverseDynamicsDv
-        | Quantity::ForwardDynamicsDq
-        | Quantity::ForwardDynamicsDv
-        | Quantity::CoriolisMatrix => vec![nv, nv],
-        Quantity::TorqueRegressor => vec![nv, bodies, layout::PARAMETERS],
-        Quantity::MassMatrixProbe | Quantity::BodyJacobian => vec![6, nv],
-        Quantity::BodyPlacement => vec![bodies, 12],
-        Quantity::BodyVelocity | Quantity::BodyAcceleration => vec![bodies, 6],
-        Quantity::Readback => vec![bodies, 22],
-        _ => vec![quantity.size(robot)],
-    };
-    [&[count][..], &per_state].concat()
+    std::iter::once(count).chain(quantity.shape(robot)).collect()
 }
 
 /// The shape of the block `readback`.
 pub(crate) fn of_readback(robot: &Robot) -> Vec<usize> {
-    vec![robot.description.bodies.len(), 22]
+    Quantity::Readback.shape(robot).collect()
 }
 
 /// The numbers of a block that must be there in this shape.

@@ -1,9 +1,8 @@
 //! Section: what the numbers mean, what is and is not included, and how to get them again.
 
-use featherbench_results::RunInfo;
+use featherbench_results::{Quantity, RunInfo};
 use maud::{Markup, html};
 
-use crate::labels::QUANTITIES;
 use crate::section::Section;
 
 /// Writes the section, with the quantities and terms of the sections of studies.
@@ -67,10 +66,10 @@ fn body(run: &RunInfo, sections: &[Section]) -> Markup {
 /// The measures of the run's quantities, each with the quantities that share it.
 fn measures(quantities: &[&str]) -> Vec<(Vec<&'static str>, &'static str)> {
     let mut measures: Vec<(Vec<&str>, &str)> = Vec::new();
-    for label in QUANTITIES.iter().filter(|label| !label.measure.is_empty() && quantities.contains(&label.name)) {
-        match measures.last_mut().filter(|(_, measure)| *measure == label.measure) {
-            Some((titles, _)) => titles.push(label.title),
-            None => measures.push((vec![label.title], label.measure)),
+    for quantity in Quantity::ALL.into_iter().filter(|quantity| !quantity.error().is_empty() && quantities.contains(&quantity.name())) {
+        match measures.last_mut().filter(|(_, measure)| *measure == quantity.error()) {
+            Some((titles, _)) => titles.push(quantity.title()),
+            None => measures.push((vec![quantity.title()], quantity.error())),
         }
     }
     measures

@@ -25,6 +25,7 @@ mod file;
 mod names;
 mod params;
 mod properties;
+mod quantity;
 mod row;
 mod run_info;
 mod severity;
@@ -45,6 +46,7 @@ pub use file::{
 pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;
 pub use properties::{Base, Feature, Properties};
+pub use quantity::{Asked, Extent, Extents, Measure, Quantity};
 pub use row::{MARGIN_LIMIT, Row};
 pub use run_info::{
     Convention, Culprit, EngineInfo, EngineSource, Expectation, GateKind, GitInfo, Host, ModelOrigin, RUN_FORMAT, RobotInfo, RunInfo,

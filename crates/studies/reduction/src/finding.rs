@@ -161,7 +161,7 @@ fn study(name: &str) -> Option<Box<dyn Study>> {
 /// The truth in the place of our answer.
 fn truth(robot: &Robot, quantity: Quantity) -> Finished {
     let model = TruthModel::new(robot);
-    let count = quantity.states(robot.states.count());
+    let count = robot.asked(quantity);
     let values: Option<Vec<Vec<f64>>> = (0..count).map(|k| model.as_ref()?.answer(robot, quantity, k)).collect();
     let none = || Outcome::NoAnswer(NoAnswer::Failed("there is no true answer".into()));
     let identity = Identity { name: OWN.into(), version: String::new(), source: EngineSource::Own, build: BTreeMap::new() };
@@ -174,7 +174,7 @@ pub fn true_answer(robot: &Robot, quantity: Quantity) -> Option<Vec<f64>> {
     if Quantity::DERIVATIVES.contains(&quantity) {
         return featherbench_bench::truth::TrueDerivatives::new(robot)?.answer(robot, quantity, 0);
     }
-    let quantity = if quantity == Quantity::ForwardDynamicsSingle { Quantity::ForwardDynamics } else { quantity };
+    let quantity = quantity.in_double();
     TruthModel::new(robot)?.answer(robot, quantity, 0)
 }
 

@@ -2,8 +2,7 @@
 
 use crate::STUDIES;
 use featherbench_answers::lesson;
-use featherbench_report::labels;
-use featherbench_results::{Dictionary, Named, Row};
+use featherbench_results::{Dictionary, Named, Quantity, Row};
 use featherbench_speed::operations;
 
 /// Keys of `params` that several studies have with one meaning.
@@ -27,7 +26,7 @@ pub(crate) fn meaning(study: &str, column: Named, name: &str) -> Option<String> 
         exact.or_else(|| list.iter().find(|(known, _)| stands_for(known, name))).map(|(_, meaning)| (*meaning).to_owned())
     };
     match column {
-        Named::Quantity => of_label(name).or_else(|| of_claim(study, name)).or_else(|| own(words.quantities)),
+        Named::Quantity => of_quantity(name).or_else(|| of_claim(study, name)).or_else(|| own(words.quantities)),
         Named::Metric => {
             let counted = ["operations", "scaling"].contains(&study).then(|| own(&operations::COUNTS)).flatten();
             counted.or_else(|| own(words.metrics))
@@ -36,10 +35,12 @@ pub(crate) fn meaning(study: &str, column: Named, name: &str) -> Option<String> 
     }
 }
 
-/// A quantity that the report has a label for: its title, and the measure of its error.
-fn of_label(name: &str) -> Option<String> {
-    let label = labels::QUANTITIES.iter().find(|label| label.name == name)?;
-    Some(if label.measure.is_empty() { label.title.to_owned() } else { format!("{}; its error: {}", label.title, label.measure) })
+/// A quantity of engines: its title, and the measure of its error.
+fn of_quantity(name: &str) -> Option<String> {
+    let quantity = Quantity::parse(name)?;
+    // A title that is the name itself explains nothing.
+    let title = if quantity.title() == name { quantity.words() } else { quantity.title() };
+    Some(if quantity.error().is_empty() { title.to_owned() } else { format!("{title}; its error: {}", quantity.error()) })
 }
 
 /// A claim of the lesson: what it is about, and what is right.

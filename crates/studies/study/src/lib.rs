@@ -87,7 +87,7 @@ pub fn evaluate(context: &Context, cell: &Cell) -> Outcome {
 /// # Errors
 /// What the engine says instead of an answer; [`NoAnswer::Failed`] if the numbers are not as many as are due.
 pub fn asked(engine: &dyn Engine, robot: &Robot, quantity: Quantity, method: &str) -> Result<Vec<f64>, NoAnswer> {
-    let count = quantity.states(robot.states.count());
+    let count = robot.asked(quantity);
     let mut prepared = engine.prepare(robot, quantity, method, &robot.states)?;
     prepared.run(0..count)?;
     let (values, due) = (prepared.read().to_vec(), count * quantity.size(robot));

@@ -8,6 +8,7 @@ use super::{Magnitudes, ratio, worst};
 use crate::{Quantity, Robot, layout};
 use featherbench_dynamics::{Crba, TreeSparse};
 use featherbench_model::JointKind;
+use featherbench_results::Measure;
 
 /// The error of a derivative or a Coriolis matrix; see [`derivative_size`].
 pub(super) fn error(robot: &Robot, quantity: Quantity, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
@@ -21,9 +22,9 @@ pub(super) fn error(robot: &Robot, quantity: Quantity, at: &Magnitudes, referenc
 /// The terms of a derivative have the size of that rate, squared if it is by q. They have it where they cancel, too: a pendulum's ∂ID/∂v is
 /// zero at any speed, and derivatives by v are zero at rest. The result is NaN if an entry is.
 pub fn derivative_size(robot: &Robot, quantity: Quantity, at: &Magnitudes, reference: &[f64], difference: &[f64]) -> f64 {
-    let Some(scales) = scales(robot, quantity, at.state) else { return f64::NAN };
+    let Measure::Derivative { forward, by_q } = quantity.measure() else { return f64::NAN };
+    let Some(scales) = scales(robot, forward, at.state) else { return f64::NAN };
     let largest = |values: &mut dyn Iterator<Item = f64>| values.zip(&scales).fold(0.0, |most, (x, scale)| worst(most, (x * scale).abs()));
-    let by_q = matches!(quantity, Quantity::InverseDynamicsDq | Quantity::ForwardDynamicsDq);
     let Rates { turning, falling, far } = Rates::of(robot, at);
     let squared = if far > 0.0 { turning + falling / far } else { turning };
     let size = worst(largest(&mut reference.iter().copied()), if by_q { squared } else { squared.sqrt() });
@@ -31,9 +32,8 @@ pub fn derivative_size(robot: &Robot, quantity: Quantity, at: &Magnitudes, refer
 }
 
 /// What each entry is multiplied by. `None` if M cannot be computed at the state.
-fn scales(robot: &Robot, quantity: Quantity, state: usize) -> Option<Vec<f64>> {
+fn scales(robot: &Robot, forward: bool, state: usize) -> Option<Vec<f64>> {
     let root = root(robot, state)?;
-    let forward = matches!(quantity, Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv);
     let row = |x: &f64| if forward { *x } else { x.recip() };
     Some(root.iter().flat_map(|of_row| root.iter().map(move |of_column| row(of_row) / of_column)).collect())
 }
@@ -43,18 +43,18 @@ fn scales(robot: &Robot, quantity: Quantity, state: usize) -> Option<Vec<f64>> {
 ///
 /// Terms may cancel in the blocks by (q, q) and (q, v). So these are not smaller than the largest entry by (v, v) or (q, a) times the rate of
 /// the state, squared or not. The result is NaN if an entry is.
-pub(super) fn second_error(robot: &Robot, quantity: Quantity, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
+pub(super) fn second_error(robot: &Robot, forward: bool, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
     let Some(root) = root(robot, at.state) else { return f64::NAN };
     let turning = Rates::of(robot, at).turning;
     let n = root.len();
     let largest = |block: usize, entry: &dyn Fn(usize) -> f64| {
-        let by_tau = block == 3 && quantity == Quantity::ForwardDynamicsSecond;
+        let by_tau = block == 3 && forward;
         let scale = |j: usize, k: usize| if by_tau { root[k] / root[j] } else { (root[j] * root[k]).recip() };
         (0..n * n).fold(0.0, |most, place| worst(most, (entry(block * n * n + place) * scale(place / n, place % n)).abs()))
     };
     let size = |block: usize| largest(block, &|entry| reference[entry]);
     // Those by (q, τ) have another unit.
-    let still = if quantity == Quantity::InverseDynamicsSecond { worst(size(2), size(3)) } else { size(2) };
+    let still = if forward { size(2) } else { worst(size(2), size(3)) };
     let least = [still * turning, still * turning.sqrt(), 0.0, 0.0];
     least.into_iter().enumerate().fold(0.0, |error, (block, least)| {
         let difference = largest(block, &|entry| value[entry] - reference[entry]);
@@ -140,8 +140,7 @@ mod tests {
         let description = Family::parse("chain:n=2,layout=spatial").unwrap().generate().unwrap();
         let robot = Robot::new(&description, "test", ModelOrigin::Generated, 1, 1).unwrap();
         let (at, root) = (&robot.magnitudes()[0], root(&robot, 0).unwrap());
-        for quantity in Quantity::SECOND_DERIVATIVES {
-            let forward = quantity == Quantity::ForwardDynamicsSecond;
+        for forward in [false, true] {
             let unit = |entry: usize| {
                 let (block, j, k) = (entry / 4, entry / 2 % 2, entry % 2);
                 if block == 3 && forward { root[j] / root[k] } else { root[j] * root[k] }
@@ -151,9 +150,9 @@ mod tests {
             for entry in 0..16 {
                 let mut value = due.clone();
                 value[entry] += 0.25 * unit(entry);
-                let found = second_error(&robot, quantity, at, &due, &value);
+                let found = second_error(&robot, forward, at, &due, &value);
                 let size = [1e9, 1e9, 2.0, 4.0][entry / 4];
-                assert!((found * size / 0.25 - 1.0).abs() < 1e-6, "{quantity:?} at {entry}: {found:e}");
+                assert!((found * size / 0.25 - 1.0).abs() < 1e-6, "forward {forward} at {entry}: {found:e}");
             }
         }
     }

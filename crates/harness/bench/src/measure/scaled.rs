@@ -3,6 +3,7 @@
 use super::{Magnitudes, derivative, ratio, worst};
 use crate::{Quantity, Robot};
 use featherbench_model::JointKind;
+use featherbench_results::Measure;
 
 /// The largest difference between `value` and `reference`, each entry over the magnitude of its own terms at the state.
 ///
@@ -15,30 +16,30 @@ pub fn scaled_error(robot: &Robot, quantity: Quantity, at: &Magnitudes, referenc
     }
     let nv = robot.model.topology.nv();
     let mass = total_mass(robot);
-    match quantity {
-        Quantity::InverseDynamics => entries(reference, value, &at.joint_force),
-        Quantity::InverseDynamicsWrench => entries(reference, value, &at.joint_force_wrench),
-        Quantity::Bias => entries(reference, value, &at.bias_force),
-        Quantity::MassMatrix | Quantity::MassMatrixInverse => mass_matrix(nv, reference, value),
-        Quantity::MassMatrixSparse => mass_matrix_sparse(robot, reference, value),
-        Quantity::Factorization => mass_matrix_sparse(robot, &multiplied(robot, reference), &multiplied(robot, value)),
-        Quantity::MassMatrixProbe => mass_matrix_probe(nv, &robot.probe(), reference, value),
-        Quantity::KineticEnergy => entries(reference, value, reference),
-        Quantity::PotentialEnergy => {
+    match quantity.measure() {
+        Measure::JointForces => entries(reference, value, &at.joint_force),
+        Measure::JointForcesWrench => entries(reference, value, &at.joint_force_wrench),
+        Measure::BiasForces => entries(reference, value, &at.bias_force),
+        Measure::Matrix => mass_matrix(nv, reference, value),
+        Measure::SparseMatrix => mass_matrix_sparse(robot, reference, value),
+        Measure::Factors => mass_matrix_sparse(robot, &multiplied(robot, reference), &multiplied(robot, value)),
+        Measure::Products => mass_matrix_probe(nv, &robot.probe(), reference, value),
+        Measure::Itself => entries(reference, value, reference),
+        Measure::PotentialEnergy => {
             let gravity = robot.model.gravity.norm();
             entries(reference, value, &[mass * gravity * reach_of_mass(robot, at)])
         }
-        Quantity::CenterOfMass => entries(reference, value, &[reach_of_mass(robot, at); 3]),
-        Quantity::Momentum => momentum(robot, at, reference, value),
-        Quantity::BodyPlacement => per_body(robot, reference, value, |body| {
+        Measure::CenterOfMass => entries(reference, value, &[reach_of_mass(robot, at); 3]),
+        Measure::Momentum => momentum(robot, at, reference, value),
+        Measure::Placements => per_body(robot, reference, value, |body| {
             let reach = at.reach[body];
             [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, reach, reach, reach]
         }),
         // The velocity of the whole body counts: its origin may be at rest on the joint's axis while the rest of it rotates.
-        Quantity::BodyVelocity => per_body(robot, reference, value, |body| {
+        Measure::Velocities => per_body(robot, reference, value, |body| {
             halves(at.angular_velocity[body], at.linear_velocity[body] + at.angular_velocity[body] * at.size[body])
         }),
-        Quantity::BodyAcceleration => {
+        Measure::Accelerations => {
             // Gravity is a term: engines have it in their accelerations, and subtracting it cancels.
             let gravity = robot.model.gravity.norm();
             per_body(robot, reference, value, |body| {
@@ -46,22 +47,15 @@ pub fn scaled_error(robot: &Robot, quantity: Quantity, at: &Magnitudes, referenc
                 halves(at.angular_acceleration[body], at.linear_acceleration[body] + gravity + swing * at.size[body])
             })
         }
-        Quantity::BodyJacobian => body_jacobian(robot, at, reference, value),
-        Quantity::Readback => readback(reference, value),
-        Quantity::InverseDynamicsDq
-        | Quantity::InverseDynamicsDv
-        | Quantity::ForwardDynamicsDq
-        | Quantity::ForwardDynamicsDv
-        | Quantity::CoriolisMatrix => derivative::error(robot, quantity, at, reference, value),
-        Quantity::TorqueRegressor => derivative::regressor_error(robot, at, reference, value),
-        Quantity::InverseDynamicsSecond | Quantity::ForwardDynamicsSecond => {
-            derivative::second_error(robot, quantity, at, reference, value)
-        }
-        Quantity::StoredEntries => entries(reference, value, &[1.0]),
+        Measure::Jacobian => body_jacobian(robot, at, reference, value),
+        Measure::Readback => readback(reference, value),
+        Measure::Derivative { .. } => derivative::error(robot, quantity, at, reference, value),
+        Measure::Regressor => derivative::regressor_error(robot, at, reference, value),
+        Measure::SecondDerivative { forward } => derivative::second_error(robot, forward, at, reference, value),
         // More numbers than ours are fill-in, and no error.
-        Quantity::FactorEntries if value >= reference => 0.0,
-        Quantity::FactorEntries => entries(reference, value, &[1.0]),
-        Quantity::ForwardDynamics | Quantity::ForwardDynamicsSingle | Quantity::Solve => {
+        Measure::LowCount if value >= reference => 0.0,
+        Measure::Count | Measure::LowCount => entries(reference, value, &[1.0]),
+        Measure::Largest => {
             let largest = reference.iter().fold(0.0_f64, |largest, x| worst(largest, x.abs()));
             entries(reference, value, &vec![largest; reference.len()])
         }

@@ -141,15 +141,7 @@ impl Kernels {
                 let mut prepared = featherbench.prepare(robot, quantity, &method, states)?;
                 prepared.run(first..first + count)?;
                 self.evaluated += 1;
-                let (nv, bodies) = (robot.states.nv, robot.description.bodies.len());
-                let shape = match quantity {
-                    Quantity::TorqueRegressor => vec![count, nv, bodies, 10],
-                    _ if quantity == Quantity::MassMatrix || Quantity::DERIVATIVES.contains(&quantity) => vec![count, nv, nv],
-                    Quantity::BodyJacobian => vec![count, 6, nv],
-                    Quantity::BodyPlacement => vec![count, bodies, 12],
-                    Quantity::BodyVelocity | Quantity::BodyAcceleration => vec![count, bodies, 6],
-                    _ => vec![count, quantity.size(robot)],
-                };
+                let shape: Vec<usize> = std::iter::once(count).chain(quantity.shape(robot)).collect();
                 Ok(Message::new(json!({}), vec![Block::new("value", &shape, prepared.read())]))
             }
             "residual" => {

@@ -3,7 +3,7 @@
 use featherbench_study::Words;
 
 pub(crate) const WORDS: Words = Words {
-    quantities: &[("fd_f32", "forward dynamics in single precision")],
+    quantities: &[],
     metrics: &[
         ("true", "the largest error over the states, by the measure of the quantity, against double-double arithmetic"),
         ("true_forward", "‖a − truth‖_M over ‖truth‖_M: the largest over the states"),

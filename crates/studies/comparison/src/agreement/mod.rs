@@ -102,7 +102,7 @@ pub(crate) fn asked(robot: &Robot, quantity: Quantity) -> bool {
 }
 
 fn cell(robot: &Robot, engine: &dyn Engine, quantity: Quantity, method: String) -> Cell {
-    let params = json!({"base": robot.base(), "joints": robot.joint_kinds(), "states": quantity.states(robot.states.count())});
+    let params = json!({"base": robot.base(), "joints": robot.joint_kinds(), "states": robot.asked(quantity)});
     Cell::new("agreement", robot, engine.identity(), quantity.name(), method, params)
 }
 

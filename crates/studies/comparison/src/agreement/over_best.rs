@@ -27,7 +27,7 @@ pub(crate) fn over_best(own: &str, robot: &Robot, finished: &[Finished], at: &[M
             finished.iter().filter(|(cell, outcome)| cell.quantity == quantity.name() && outcome.values().is_some()).collect();
         let (ours, _) = answers.iter().find(|(cell, _)| cell.engine == own)?;
         answers.iter().find(|(cell, _)| cell.engine != own)?;
-        let count = quantity.states(robot.states.count());
+        let count = robot.asked(quantity);
         let true_values: Vec<Vec<f64>> = (0..count).map(|k| truth.answer(robot, quantity, k)).collect::<Option<_>>()?;
         let error = |values: &[f64]| {
             let states = values.chunks_exact(quantity.size(robot)).zip(&true_values).enumerate();

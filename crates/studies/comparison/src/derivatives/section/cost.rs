@@ -3,7 +3,7 @@
 use featherbench_bench::{OWN, Quantity};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, labels, opener};
-use featherbench_results::Row;
+use featherbench_results::{Extents, Row};
 use maud::{Markup, html};
 
 /// The study of times.
@@ -68,12 +68,7 @@ fn costs(rows: &[Row]) -> Vec<Cost<'_>> {
 fn entries(row: &Row) -> Option<usize> {
     let quantity = Quantity::parse(&row.quantity).filter(|quantity| quantity.is_derivative())?;
     let (nv, bodies) = (row.nv? as usize, row.bodies? as usize);
-    let entries = match quantity {
-        Quantity::TorqueRegressor => nv * bodies * featherbench_bench::layout::PARAMETERS,
-        Quantity::InverseDynamicsSecond | Quantity::ForwardDynamicsSecond => 4 * nv * nv,
-        _ => nv * nv,
-    };
-    Some(entries).filter(|entries| *entries > 0)
+    Some(quantity.size(Extents { nv, bodies, ..Extents::default() })).filter(|entries| *entries > 0)
 }
 
 #[cfg(test)]

@@ -1,11 +1,36 @@
-//! The layout of an answer's numbers: results of the kernels in the layout of their quantity, over any scalar.
+//! The layout of an answer's numbers: how many there are for a robot, and results of the kernels in the layout of their quantity, over any
+//! scalar.
 //!
 //! The same text serves our kernels in `f64` and the truth in double-double.
 
-use crate::Quantity;
+use crate::{Quantity, Robot};
 pub use featherbench_dynamics::PARAMETERS;
 use featherbench_dynamics::{BodyMotion, DimensionError, TreeSparse};
+use featherbench_results::{Asked, Extents};
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{Motion, Real};
+
+/// Robots with more degrees of freedom than this are asked for [`Quantity::MassMatrixProbe`] and not for the whole matrix.
+pub const DENSE_LIMIT: usize = 64;
+
+impl From<&Robot> for Extents {
+    fn from(robot: &Robot) -> Self {
+        let topology = &robot.model.topology;
+        Self { nv: topology.nv(), bodies: robot.description.bodies.len(), stored: topology.stored() }
+    }
+}
+
+impl Robot {
+    /// The number of its states at which a quantity is asked.
+    pub fn asked(&self, quantity: Quantity) -> usize {
+        let count = self.states.count();
+        match quantity.asked() {
+            Asked::All => count,
+            Asked::Head => count.min(StateBatch::HEAD),
+            Asked::One => count.min(1),
+        }
+    }
+}
 
 /// The whole matrix, row after row.
 pub fn dense<T: Real>(matrix: &TreeSparse<T>, out: &mut [T]) {
