@@ -22,7 +22,7 @@ mod tests;
 mod vibrations;
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Study};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, Outcome, Study};
 use featherbench_continua::{Basis, Element, Fit, Hinges, Rod, Strain};
 use featherbench_results::Row;
 use featherbench_study::known::{Case, KnownAnswers, Number, count, error, failed, largest, told};
@@ -80,8 +80,8 @@ impl Study for Continuum {
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        if cell.quantity == beams::QUANTITY { beams::evaluate(context, cell).into() } else { self.known.evaluate(context, cell) }
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        if asked.cell.quantity == beams::QUANTITY { beams::evaluate(asked).into() } else { self.known.evaluate(asked) }
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

@@ -16,7 +16,7 @@ mod tests;
 mod witness;
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Finished, NoSettings, Outcome, Study};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoSettings, Outcome, Study};
 use featherbench_results::Row;
 use featherbench_study::known::{Case, KnownAnswers, Number, count, error, failed, largest, told};
 use featherbench_study::{Entry, Made, Setup};
@@ -66,8 +66,8 @@ impl Study for Identification {
         self.known.plan(context).into_iter().chain(witnesses).collect()
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        if witness::is_of(cell) { witness::evaluate(context, cell).into() } else { self.known.evaluate(context, cell) }
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        if witness::is_of(asked.cell) { witness::evaluate(asked).into() } else { self.known.evaluate(asked) }
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

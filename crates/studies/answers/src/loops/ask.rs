@@ -20,7 +20,7 @@ const FINE: f64 = 1e-4;
 
 /// A question.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Asked {
+pub(super) enum Question {
     /// Accelerations at states on the loops.
     Accelerations(System),
     /// Accelerations beside the flat parallelogram.
@@ -56,7 +56,7 @@ pub(super) struct Judged {
     pub settings: Value,
 }
 
-impl Asked {
+impl Question {
     /// All questions, in the order of the report.
     pub fn all() -> Vec<Self> {
         let accelerations = ACCELERATED.into_iter().map(Self::Accelerations);

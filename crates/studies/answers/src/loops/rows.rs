@@ -4,23 +4,14 @@ use super::ask::Judged;
 use super::systems::NEAR;
 use featherbench_bench::{Cell, Gates, NoAnswer, OWN, Outcome};
 use featherbench_results::{Kind, Row, Verdict, canonical_json};
+use featherbench_study::case_row;
 use serde_json::{Value, json};
 
 /// All rows of a cell. Gates judge ours: what another engine gives is a finding.
 pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
     let asked = &cell.params["asked"];
-    let blank = Row {
-        cell: cell.id(),
-        study: cell.study.clone(),
-        family: asked["name"].as_str().unwrap_or(&cell.robot).to_owned(),
-        params: canonical_json(asked),
-        engine: cell.engine.clone(),
-        engine_version: cell.version.clone(),
-        method: cell.method.clone(),
-        precision: cell.scalar.clone(),
-        quantity: cell.quantity.clone(),
-        ..Row::default()
-    };
+    let family = asked["name"].as_str().unwrap_or(&cell.robot).to_owned();
+    let blank = Row { family, params: canonical_json(asked), ..case_row(cell) };
     let judged = match outcome {
         Outcome::Text(text) => serde_json::from_str::<Judged>(text).map_err(|error| error.to_string()),
         Outcome::NoAnswer(NoAnswer::NotOffered(reason)) => {

@@ -9,12 +9,13 @@
 
 use super::STUDY;
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, OWN, Quantity, Robot, WithResidual};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, OWN, Quantity, Robot, WithResidual};
 use featherbench_dynamics::inverse_dynamics;
 use featherbench_formats::neutral;
 use featherbench_residuals::{Described, Payload, Residual, SmoothCoulomb, State, Sum, Viscous, Zero};
 use featherbench_results::{Relation, Row, Verdict};
-use featherbench_study::{asked, row};
+use featherbench_study::known::failed;
+use featherbench_study::{answer, row, unanswered};
 use serde_json::{Value, json};
 
 const RESIDUALS: [&str; 3] = ["zero", "friction", "payload and friction"];
@@ -48,10 +49,6 @@ pub(super) fn plan(context: &Context) -> Vec<Cell> {
     cells
 }
 
-fn failed(error: impl std::fmt::Display) -> NoAnswer {
-    NoAnswer::Failed(error.to_string())
-}
-
 /// The residual of a robot by its name.
 fn residual(robot: &Robot, name: &str) -> Result<Box<dyn Residual>, NoAnswer> {
     let nv = robot.states.nv;
@@ -73,14 +70,13 @@ fn residual(robot: &Robot, name: &str) -> Result<Box<dyn Residual>, NoAnswer> {
 }
 
 /// Of zero: how many numbers have other bits. Of others: the error of each state.
-pub(super) fn evaluate(context: &Context, robot: &Robot, cell: &Cell) -> Result<Vec<f64>, NoAnswer> {
-    let engine = context.engine(&cell.engine).ok_or_else(|| failed("there is no engine of this cell"))?;
-    let quantity = Quantity::parse(&cell.quantity).ok_or_else(|| failed("there is no quantity of this cell"))?;
+pub(super) fn evaluate(asked: &Asked, robot: &Robot) -> Result<Vec<f64>, NoAnswer> {
+    let (engine, quantity, cell) = (asked.engine()?, asked.quantity()?, asked.cell);
     let name = cell.params["residual"].as_str().unwrap_or_default();
     let residual = residual(robot, name)?;
-    let found = asked(&WithResidual::new(engine, residual.as_ref()), robot, quantity, &cell.method)?;
+    let found = answer(&WithResidual::new(engine, residual.as_ref()), robot, quantity, &cell.method)?;
     if name == "zero" {
-        let nominal = asked(engine, robot, quantity, &cell.method)?;
+        let nominal = answer(engine, robot, quantity, &cell.method)?;
         return Ok(vec![nominal.iter().zip(&found).filter(|(a, b)| a.to_bits() != b.to_bits()).count() as f64]);
     }
     let (states, nv) = (&robot.states, robot.states.nv);
@@ -124,10 +120,7 @@ pub(super) fn rows(context: &Context, robot: &Robot, finished: &[Finished]) -> V
                 let row = Row { metric: metric.into(), reference: OWN.into(), ..blank };
                 context.gates.judge(row, errors.iter().copied().fold(0.0, worst), 1.0)
             }
-            Err(no_answer) => {
-                let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
-                context.gates.explain(blank.without_value(verdict, no_answer.to_string()))
-            }
+            Err(no_answer) => context.gates.explain(unanswered(blank, &no_answer, Verdict::Skip)),
         }
     };
     finished.iter().map(of).collect()

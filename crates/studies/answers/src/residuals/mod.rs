@@ -21,7 +21,7 @@ pub(crate) mod section;
 mod tests;
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Finished, NoSettings, Outcome, Robot, Study};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoSettings, Outcome, Robot, Study};
 use featherbench_learning::Arm;
 use featherbench_results::Row;
 use featherbench_study::known::{Case, KnownAnswers, Number, count, error, failed, largest, told};
@@ -62,10 +62,10 @@ impl Study for Residuals {
         self.known.plan(context).into_iter().chain(engines::plan(context)).collect()
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        match context.robot(&cell.robot) {
-            Some(robot) => engines::evaluate(context, robot, cell).into(),
-            None => self.known.evaluate(context, cell),
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        match asked.robot() {
+            Ok(robot) => engines::evaluate(asked, robot).into(),
+            Err(_) => self.known.evaluate(asked),
         }
     }
 

@@ -4,23 +4,13 @@ use super::MOTION;
 use featherbench_bench::{Cell, Gates, NoAnswer, OWN, Outcome};
 use featherbench_results::{Row, Verdict, canonical_json};
 use featherbench_scenes::{Fit, Measure, Question, SoftContact, block_step_felt};
+use featherbench_study::case_row;
 use serde_json::{Value, json};
 use std::f64::consts::SQRT_2;
 
 /// The fields of all rows of a cell. Its `params` tell the scene's parameters and the engine's settings.
 pub(super) fn blank(cell: &Cell, params: &Value) -> Row {
-    Row {
-        cell: cell.id(),
-        study: cell.study.clone(),
-        family: cell.robot.clone(),
-        params: canonical_json(params),
-        engine: cell.engine.clone(),
-        engine_version: cell.version.clone(),
-        method: cell.method.clone(),
-        precision: cell.scalar.clone(),
-        quantity: cell.quantity.clone(),
-        ..Row::default()
-    }
+    Row { params: canonical_json(params), ..case_row(cell) }
 }
 
 /// The row of a cell without an answer. What an engine does not offer is a skip; our own lack of an answer is an error, and another engine's

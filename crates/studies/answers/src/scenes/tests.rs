@@ -2,7 +2,7 @@
 
 use super::{MOTION, NONE, Scenes, Settings, cell, movers::Mover, rows};
 use crate::tests::gates;
-use featherbench_bench::{Cell, Context, NoAnswer, Outcome, Study};
+use featherbench_bench::{Asked, Cell, Context, NoAnswer, Outcome, Study};
 use featherbench_results::{Row, Verdict};
 use featherbench_scenes::{Question, library};
 use serde_json::json;
@@ -99,7 +99,7 @@ fn an_absent_engine_is_a_row() {
     let context = Context { robots: &[], engines: &[], gates: &gates, seed: 1 };
     let cells = study.plan(&context);
     assert!(cells.len() == 2 && cells.iter().all(|cell| cell.method == NONE));
-    let finished: Vec<_> = cells.into_iter().map(|cell| (cell.clone(), study.evaluate(&context, &cell))).collect();
+    let finished: Vec<_> = cells.into_iter().map(|cell| (cell.clone(), study.evaluate(&Asked::of(&context, &cell)))).collect();
     let rows = study.compare_all(&context, &finished);
     for (row, engine) in rows.iter().zip(["rapier", "dart"]) {
         assert!(row.engine == engine && row.verdict == Verdict::Skip && row.value.is_none(), "{row:?}");

@@ -14,10 +14,10 @@ pub(crate) mod words;
 
 use featherbench_bench::measure::{ForwardScale, scaled_error};
 use featherbench_bench::truth::{Truth, TruthModel, conditioning_bound};
-use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Asked, Cell, Context, DENSE_LIMIT, Finished, NoSettings, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::TreeSparse;
 use featherbench_results::{Row, Verdict};
-use featherbench_study::{Entry, Made, Setup, row};
+use featherbench_study::{Entry, Made, Setup, row, unanswered};
 use serde_json::json;
 
 /// The accuracy study, and the study `sweep`, which asks the same of drawn robots at one state each.
@@ -97,8 +97,8 @@ impl Study for Accuracy {
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        featherbench_study::evaluate(context, cell)
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        featherbench_study::evaluate(asked)
     }
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
@@ -117,14 +117,12 @@ impl Study for Accuracy {
         let (mut rows, mut medians) = (Vec::new(), Vec::new());
         for (cell, outcome) in finished {
             let blank = Row { reference: TRUTH.into(), unit: "1".into(), states: "all".into(), ..row(cell, robot) };
-            let (Outcome::Values(values), Some(quantity)) = (outcome, Quantity::parse(&cell.quantity)) else {
-                let (verdict, reason) = match outcome {
-                    Outcome::NoAnswer(NoAnswer::NotOffered(reason)) => (Verdict::Skip, reason.clone()),
-                    Outcome::NoAnswer(NoAnswer::Failed(reason)) => (Verdict::Error, reason.clone()),
-                    Outcome::Values(_) | Outcome::Text(_) => (Verdict::Error, format!("there is no quantity {}", cell.quantity)),
-                };
-                rows.push(context.gates.explain(blank.without_value(verdict, reason)));
-                continue;
+            let (values, quantity) = match outcome.answer().and_then(|values| Ok((values, Asked::of(context, cell).quantity()?))) {
+                Ok(answered) => answered,
+                Err(no_answer) => {
+                    rows.push(context.gates.explain(unanswered(blank, &no_answer, Verdict::Skip)));
+                    continue;
+                }
             };
             if matches!(quantity, Quantity::ForwardDynamics | Quantity::ForwardDynamicsSingle) {
                 let answers = values.chunks_exact(robot.states.nv).zip(&truth).zip(&forward);

@@ -8,12 +8,12 @@ pub(crate) mod section;
 pub(crate) mod words;
 
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
-use featherbench_bench::{Cell, Context, DENSE_LIMIT, Engine, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Asked, Cell, Context, DENSE_LIMIT, Engine, Finished, NoSettings, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::Rnea;
 use featherbench_model::Model;
 use featherbench_results::{Row, Verdict};
 use featherbench_robots::Case;
-use featherbench_study::{Entry, Made, Setup, row};
+use featherbench_study::{Entry, Made, Setup, row, unanswered};
 use over_best::over_best;
 use serde_json::json;
 
@@ -72,8 +72,8 @@ impl Study for Agreement {
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        featherbench_study::evaluate(context, cell)
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        featherbench_study::evaluate(asked)
     }
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
@@ -140,9 +140,8 @@ impl Comparison<'_> {
             Outcome::Values(values) => values,
             Outcome::Text(_) => return Vec::new(),
             Outcome::NoAnswer(no_answer) => {
-                let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
                 let row = Row { reference: REFERENCE.into(), ..row(cell, self.robot) };
-                return vec![self.context.gates.explain(row.without_value(verdict, no_answer.to_string()))];
+                return vec![self.context.gates.explain(unanswered(row, no_answer, Verdict::Skip))];
             }
         };
         if quantity == Quantity::ForwardDynamics {

@@ -17,11 +17,11 @@ pub(crate) mod section;
 pub(crate) mod words;
 
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Stepper, Study};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Stepper, Study};
 use featherbench_dynamics::{energy, forward_dynamics};
 use featherbench_results::{Row, Verdict};
 use featherbench_robots::Case;
-use featherbench_study::{Entry, Made, Setup, row};
+use featherbench_study::{Entry, Made, Setup, row, unanswered};
 use serde_json::json;
 use std::ops::RangeInclusive;
 
@@ -74,14 +74,13 @@ impl Study for Steps {
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        let lost = || Outcome::NoAnswer(NoAnswer::Failed("there is no robot or stepping engine of this cell".into()));
-        let Some(robot) = context.robot(&cell.robot) else { return lost() };
-        let Some(stepper) = context.engine(&cell.engine).and_then(|engine| engine.stepper()) else { return lost() };
-        match Quantity::parse(&cell.quantity) {
-            Some(Quantity::ForwardDynamics) => accelerations(robot, stepper, &cell.method).into(),
-            _ => drifts(robot, stepper, &cell.method).into(),
-        }
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        let errors = || {
+            let (robot, stepper) = (asked.robot()?, asked.offered(|engine| engine.stepper())?);
+            let of = if asked.quantity()? == Quantity::ForwardDynamics { accelerations } else { drifts };
+            of(robot, stepper, &asked.cell.method)
+        };
+        errors().into()
     }
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
@@ -91,8 +90,7 @@ impl Study for Steps {
             let values = match outcome.answer() {
                 Ok(values) => values,
                 Err(no_answer) => {
-                    let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
-                    rows.push(context.gates.explain(blank.without_value(verdict, no_answer.to_string())));
+                    rows.push(context.gates.explain(unanswered(blank, &no_answer, Verdict::Skip)));
                     continue;
                 }
             };

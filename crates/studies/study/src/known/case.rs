@@ -1,7 +1,8 @@
 //! A case: a question with a known answer, and how its numbers are judged.
 
-use featherbench_bench::{Cell, Context, NoAnswer, OWN, Outcome, hash};
-use featherbench_results::{Relation, Row, Verdict, canonical_json};
+use crate::{case_row, unanswered};
+use featherbench_bench::{Cell, Context, NoAnswer, OWN, Outcome};
+use featherbench_results::{Relation, Row, Verdict};
 use serde_json::{Value, json};
 
 /// A question with a known answer.
@@ -71,17 +72,7 @@ impl Case {
     pub(super) fn cell(&self, study: &str, context: &Context) -> Option<Cell> {
         let identity = context.engine(OWN)?.identity();
         let params = json!({"case": self.params, "seed": context.seed});
-        Some(Cell {
-            study: study.into(),
-            robot: self.name.clone(),
-            robot_hash: hash::of(canonical_json(&params).as_bytes()),
-            params,
-            engine: identity.name.clone(),
-            version: identity.version.clone(),
-            method: self.method.clone(),
-            quantity: self.quantity.into(),
-            scalar: "f64".into(),
-        })
+        Some(Cell::of_case(study, &self.name, (&identity.name, &identity.version), self.quantity, &self.method, params))
     }
 
     pub(super) fn is_of(&self, cell: &Cell) -> bool {
@@ -90,23 +81,11 @@ impl Case {
 
     /// Its rows, judged: one for each number, or one that says why there are none.
     pub fn rows(&self, context: &Context, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
-        let blank = Row {
-            cell: cell.id(),
-            study: cell.study.clone(),
-            family: self.name.clone(),
-            params: canonical_json(&cell.params),
-            engine: cell.engine.clone(),
-            engine_version: cell.version.clone(),
-            method: self.method.clone(),
-            precision: cell.scalar.clone(),
-            quantity: self.quantity.into(),
-            ..Row::default()
-        };
+        let blank = case_row(cell);
         let values = match outcome.answer() {
             Ok(values) => values,
             // A solver that is not for such a problem says so, and nothing is due.
-            Err(NoAnswer::NotOffered(reason)) => return vec![blank.without_value(Verdict::Info, reason)],
-            Err(no_answer) => return vec![blank.without_value(Verdict::Error, no_answer.to_string())],
+            Err(no_answer) => return vec![unanswered(blank, &no_answer, Verdict::Info)],
         };
         if values.is_empty() || values.len() > self.numbers.len() {
             return vec![blank.without_value(Verdict::Error, format!("{} numbers came, {} are due", values.len(), self.numbers.len()))];
