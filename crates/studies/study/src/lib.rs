@@ -13,6 +13,7 @@ use featherbench_bench::alone::Ask;
 use featherbench_bench::{Asked, Cell, Engine, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study, Suite};
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo, Verdict, canonical_json};
+use serde::de::DeserializeOwned;
 use std::sync::Arc;
 
 /// The study that a suite asks for, if it does; an error names file, line and key.
@@ -38,6 +39,13 @@ pub fn no_section(_: &RunInfo, _: &[Row], _: &Overview) -> Vec<Section> {
     Vec::new()
 }
 
+/// The rows of a study, and the chunk of the first; `None` if the run has none.
+pub fn rows_of<'a>(rows: &'a [Row], study: &str, overview: &Overview<'a>) -> Option<(Vec<&'a Row>, String)> {
+    let rows: Vec<&Row> = rows.iter().filter(|row| row.study == study).collect();
+    let chunk = overview.chunk_of(rows.first()?);
+    Some((rows, chunk))
+}
+
 /// What studies are made from.
 pub struct Setup<'a> {
     /// The suite, whose tables are the studies' settings.
@@ -50,6 +58,16 @@ pub struct Setup<'a> {
     pub reproduce: Reproduce,
     /// Measures a method in a process of its own.
     pub measure: Ask,
+}
+
+impl Setup<'_> {
+    /// The study that `study` makes of a table of the suite, if the suite has the table.
+    ///
+    /// # Errors
+    /// As [`Suite::settings`].
+    pub fn made<T: DeserializeOwned, S: Study + 'static>(&self, table: &str, study: impl FnOnce(T) -> S) -> Made {
+        Ok(self.suite.settings(table)?.map(|settings| Box::new(study(settings)) as _))
+    }
 }
 
 /// A row with the fields of its cell and robot; the study adds case, metric and value.

@@ -24,8 +24,15 @@ use featherbench_continua::known::{
 use featherbench_continua::{Hinges, Load, Settings, Solver, Status, equilibrium, fit, library, modes};
 use featherbench_results::{Kind, Row, Verdict};
 use featherbench_study::{case_row, unanswered};
-use serde_json::json;
+use serde::{Deserialize, Serialize};
 use std::time::Instant;
+
+/// The parameters of a cell.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Refinement {
+    pub(super) elements: usize,
+    forces: [f64; 3],
+}
 
 /// The quantity of these cells.
 pub(super) const QUANTITY: &str = "beam";
@@ -95,7 +102,7 @@ pub(super) fn plan(context: &Context, engines: &[String]) -> Vec<Cell> {
 }
 
 fn cell(engine: (&str, &str), element: &str, count: usize) -> Cell {
-    let params = json!({"elements": count, "forces": FORCES});
+    let params = Refinement { elements: count, forces: FORCES };
     Cell::of_case(STUDY, &format!("cantilever, n = {count}"), engine, QUANTITY, element, params)
 }
 
@@ -103,7 +110,7 @@ fn cell(engine: (&str, &str), element: &str, count: usize) -> Cell {
 pub(super) fn evaluate(asked: &Asked) -> Result<Vec<f64>, NoAnswer> {
     let cell = asked.cell;
     let missing = || NoAnswer::NotOffered(format!("{0} is not installed, or has no rods: `featherbench oracles install {0}`", cell.engine));
-    let count = cell.params["elements"].as_u64().unwrap_or_default() as usize;
+    let Refinement { elements: count, .. } = cell.params()?;
     let answer = if cell.engine == OWN {
         own(&cell.method, count)?
     } else {
@@ -199,7 +206,7 @@ pub(super) fn rows(context: &Context, finished: &[Finished]) -> Vec<Row> {
                 continue;
             }
         };
-        let count = cell.params["elements"].as_u64().unwrap_or_default() as usize;
+        let count = cell.params().map_or(0, |params: Refinement| params.elements);
         let forces: &[f64] = if has_tip(&cell.method, count) { &FORCES } else { &[] };
         if values.len() != 2 * forces.len() + MODES + 2 {
             rows.push(blank.without_value(Verdict::Error, format!("{} numbers came", values.len())));

@@ -33,12 +33,11 @@ mod systems;
 mod tests;
 pub(crate) mod words;
 
-use ask::{Question, Truths};
+use ask::{OfCell, Question, Truths};
 use featherbench_bench::{Asked, Cell, Context, Engine, Finished, LoopSolver, NoAnswer, OWN, Outcome, Study};
 use featherbench_results::Row;
-use featherbench_study::{Entry, Made, Setup};
+use featherbench_study::Entry;
 use serde::Deserialize;
-use serde_json::json;
 
 /// The study's name in rows.
 const STUDY: &str = "loops";
@@ -66,13 +65,12 @@ struct Loops {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "loops", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    let settings = setup.suite.settings::<Settings>(STUDY)?;
-    Ok(settings.map(|settings| Box::new(Loops { settings, truths: Truths::default() }) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "loops",
+    make: |setup| setup.made(STUDY, |settings| Loops { settings, truths: Truths::default() }),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 impl Loops {
     /// What is asked of every engine.
@@ -112,7 +110,7 @@ impl Study for Loops {
         for question in self.questions() {
             for (engine, method) in self.candidates(context, &question) {
                 let identity = engine.identity();
-                let params = json!({"asked": question.params(), "seed": context.seed});
+                let params = OfCell { asked: question.params(), seed: context.seed };
                 let engine = (identity.name.as_str(), identity.version.as_str());
                 cells.push(Cell::of_case(STUDY, &question.label(), engine, question.quantity(), method, params));
             }

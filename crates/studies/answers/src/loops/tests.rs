@@ -1,6 +1,6 @@
 //! Our methods on every question but the longest, rows of answers that are wrong, and the closed form.
 
-use super::ask::{Judged, Question, Truths};
+use super::ask::{Judged, OfCell, Question, Truths};
 use super::drive::Driven;
 use super::ours::{Ours, methods};
 use super::rows::rows;
@@ -14,7 +14,7 @@ use featherbench_robots::Random;
 use serde_json::json;
 
 fn cell(question: &Question, engine: &str, method: &str) -> Cell {
-    Cell::of_case(STUDY, &question.label(), (engine, ""), question.quantity(), method, json!({"asked": question.params(), "seed": 1}))
+    Cell::of_case(STUDY, &question.label(), (engine, ""), question.quantity(), method, OfCell { asked: question.params(), seed: 1 })
 }
 
 /// Those that take no minute: in a run of the suite all are evaluated.

@@ -14,7 +14,7 @@ use featherbench_bench::{Asked, Cell, ContactProblems, Context, Finished, NoAnsw
 use featherbench_contact::{Convex, Friction, Problem, Solver, library};
 use featherbench_results::{Row, Verdict};
 use featherbench_study::known::{failed, largest};
-use featherbench_study::{Entry, Made, Setup, case_row, no_section, unanswered};
+use featherbench_study::{Entry, case_row, no_section, unanswered};
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 use serde_json::json;
@@ -40,12 +40,12 @@ struct Relaxation {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "relaxation", make: of_suite, sections: no_section, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<Settings>(STUDY)?.map(|settings| Box::new(Relaxation { settings }) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "relaxation",
+    make: |setup| setup.made(STUDY, |settings| Relaxation { settings }),
+    sections: no_section,
+    words: words::WORDS,
+};
 
 /// The names of all sets of problems: of the library, and of standing robots.
 fn names() -> Vec<String> {

@@ -16,19 +16,27 @@ use featherbench_residuals::{Described, Payload, Residual, SmoothCoulomb, State,
 use featherbench_results::{Relation, Row, Verdict};
 use featherbench_study::known::failed;
 use featherbench_study::{answer, row, unanswered};
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 const RESIDUALS: [&str; 3] = ["zero", "friction", "payload and friction"];
 /// The residual of the robot's own description.
 const DESCRIBED: &str = "described";
 
 /// What defines the residual of a cell. A robot's hash is that of its rigid bodies, so its own residuals are written out as its file has them.
-fn params(robot: &Robot, residual: &str) -> Value {
-    if residual != DESCRIBED {
-        return json!({"residual": residual});
+#[derive(Serialize, Deserialize)]
+struct Params {
+    residual: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    residuals: Option<Value>,
+}
+
+impl Params {
+    fn of(robot: &Robot, residual: &str) -> Self {
+        let written = || neutral::to_string(&robot.description).ok().and_then(|text| serde_json::from_str::<Value>(&text).ok());
+        let residuals = (residual == DESCRIBED).then(|| written().map_or(Value::Null, |file| file["residuals"].clone()));
+        Self { residual: residual.into(), residuals }
     }
-    let written = neutral::to_string(&robot.description).ok().and_then(|text| serde_json::from_str::<Value>(&text).ok());
-    json!({"residual": residual, "residuals": written.map_or(Value::Null, |file| file["residuals"].clone())})
 }
 
 /// A cell per engine, robot, residual and quantity, by the engine's usual method.
@@ -38,8 +46,9 @@ pub(super) fn plan(context: &Context) -> Vec<Cell> {
         for engine in context.engines {
             for quantity in [Quantity::InverseDynamics, Quantity::ForwardDynamics] {
                 if let Some(method) = engine.methods(quantity).first() {
-                    let of =
-                        |residual| Cell::new(STUDY, robot, engine.identity(), quantity.name(), method.as_str(), params(robot, residual));
+                    let of = |residual| {
+                        Cell::new(STUDY, robot, engine.identity(), quantity.name(), method.as_str(), Params::of(robot, residual))
+                    };
                     cells.extend(RESIDUALS.map(of));
                     cells.extend((!robot.description.residuals.is_empty()).then(|| of(DESCRIBED)));
                 }
@@ -72,8 +81,8 @@ fn residual(robot: &Robot, name: &str) -> Result<Box<dyn Residual>, NoAnswer> {
 /// Of zero: how many numbers have other bits. Of others: the error of each state.
 pub(super) fn evaluate(asked: &Asked, robot: &Robot) -> Result<Vec<f64>, NoAnswer> {
     let (engine, quantity, cell) = (asked.engine()?, asked.quantity()?, asked.cell);
-    let name = cell.params["residual"].as_str().unwrap_or_default();
-    let residual = residual(robot, name)?;
+    let name = cell.params::<Params>()?.residual;
+    let residual = residual(robot, &name)?;
     let found = answer(&WithResidual::new(engine, residual.as_ref()), robot, quantity, &cell.method)?;
     if name == "zero" {
         let nominal = answer(engine, robot, quantity, &cell.method)?;
@@ -110,7 +119,7 @@ pub(super) fn rows(context: &Context, robot: &Robot, finished: &[Finished]) -> V
     let of = |(cell, outcome): &Finished| {
         let blank = Row { unit: "1".into(), ..row(cell, robot) };
         match outcome.answer() {
-            Ok(&[changed]) if cell.params["residual"] == "zero" => {
+            Ok(&[changed]) if cell.params().is_ok_and(|params: Params| params.residual == "zero") => {
                 let row = Row { metric: "changed_bits".into(), reference: cell.engine.clone(), ..blank };
                 context.gates.explain(row.gated(changed, Relation::Eq, 0.0))
             }

@@ -24,19 +24,19 @@ pub(crate) mod words;
 use featherbench_bench::{Asked, Cell, Context, Finished, NoSettings, Outcome, Robot, Study};
 use featherbench_learning::Arm;
 use featherbench_results::Row;
+use featherbench_study::Entry;
 use featherbench_study::known::{Case, KnownAnswers, Number, count, error, failed, largest, told};
-use featherbench_study::{Entry, Made, Setup};
 
 /// The study's name in rows.
 const STUDY: &str = "residuals";
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "residuals", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>(STUDY)?.map(|_| Box::new(Residuals { known: KnownAnswers::new(STUDY, cases()) }) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "residuals",
+    make: |setup| setup.made(STUDY, |_: NoSettings| Residuals { known: KnownAnswers::new(STUDY, cases()) }),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 /// Every case with a known answer.
 fn cases() -> Vec<Case> {

@@ -7,7 +7,7 @@
 //! An engine's ground is a spring of stiffness k. Its own derivative is off by −(∂ż/∂x₀) π √(m/k) in z (`guide/studies/scenes.md`, "Derivative of a bounce"): the row
 //! `spring_share` says how much of the error that is. What is left comes from steps that do not meet the instant of the impact.
 
-use super::rows::{blank, without_answer};
+use super::rows::{Told, blank, without_answer};
 use super::{BOUNCE, cell, of_engine};
 use featherbench_bench::{Asked, Cell, Context, Gates, NoAnswer, OWN, Outcome};
 use featherbench_hybrid::library::BouncingBall;
@@ -105,7 +105,9 @@ pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
     };
     let mut rows = Vec::new();
     for (&(stiffness, dt), found) in cases.iter().zip(values.chunks_exact(6)) {
-        let params = if own { cell.params.clone() } else { json!({"settings": cell.params["settings"], "stiffness": stiffness, "dt": dt}) };
+        let settings = cell.params["settings"].clone();
+        let told = Told { scene: None, duration: None, settings, dt: Some(dt), stiffness: Some(stiffness) };
+        let params = if own { cell.params.clone() } else { json!(told) };
         let of = |metric: &str, unit: &str| Row {
             metric: metric.into(),
             unit: unit.into(),

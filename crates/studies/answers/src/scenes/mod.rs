@@ -22,10 +22,10 @@ pub(crate) mod words;
 use featherbench_bench::{Asked, Cell, Context, Finished, Identity, NoAnswer, Outcome, Study};
 use featherbench_results::Row;
 use featherbench_scenes::{Question, library};
-use featherbench_study::{Entry, Made, Setup};
+use featherbench_study::Entry;
 use movers::Mover;
-use serde::Deserialize;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
 
 /// The study's name in rows.
 const STUDY: &str = "scenes";
@@ -52,13 +52,12 @@ struct Settings {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "scenes", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    let settings = setup.suite.settings::<Settings>(STUDY)?;
-    Ok(settings.map(|settings| Box::new(Scenes { settings, questions: library::all() }) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "scenes",
+    make: |setup| setup.made(STUDY, |settings| Scenes { settings, questions: library::all() }),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 impl Scenes {
     fn question(&self, cell: &Cell) -> Option<&Question> {
@@ -67,9 +66,9 @@ impl Scenes {
 
     /// Every measure of the motion at each step.
     fn moved(&self, asked: &Asked) -> Result<Vec<f64>, NoAnswer> {
-        let lost = || NoAnswer::Failed("there is no scene or mover of this cell".into());
+        let lost = || NoAnswer::Failed("there is no scene of this cell".into());
         let (question, engine) = (self.question(asked.cell).ok_or_else(lost)?, asked.engine()?);
-        let mover = Mover::named(asked.cell.params["mover"].as_str().unwrap_or_default()).ok_or_else(lost)?;
+        let Moved { mover, .. } = asked.cell.params()?;
         let mut values = Vec::new();
         for &dt in &question.dts {
             let motion = mover.simulate(engine, question, &asked.cell.method, dt)?;
@@ -77,6 +76,15 @@ impl Scenes {
         }
         Ok(values)
     }
+}
+
+/// The parameters of a motion.
+#[derive(Serialize, Deserialize)]
+struct Moved {
+    scene: Value,
+    settings: Map<String, Value>,
+    steps: Vec<f64>,
+    mover: Mover,
 }
 
 /// An engine's name and version.
@@ -113,8 +121,8 @@ impl Study for Scenes {
             for (mover, variant) in movers::of(engine.as_ref()) {
                 for question in &self.questions {
                     let scene = json!({"parameters": question.params, "duration": question.duration, "scene": question.scene});
-                    let params = json!({"scene": scene, "settings": variant.settings, "steps": question.dts, "mover": mover.name()});
-                    cells.push(cell(&question.scene.name, of_engine(identity), &variant.name, MOTION, params));
+                    let params = Moved { scene, settings: variant.settings.clone(), steps: question.dts.to_vec(), mover };
+                    cells.push(cell(&question.scene.name, of_engine(identity), &variant.name, MOTION, json!(params)));
                 }
             }
         }

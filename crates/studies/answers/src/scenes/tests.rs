@@ -1,6 +1,6 @@
 //! The study of scenes: rows of good and bad answers, laws, and our own answers.
 
-use super::{MOTION, NONE, Scenes, Settings, cell, movers::Mover, rows};
+use super::{MOTION, NONE, Scenes, Settings, cell, rows};
 use crate::tests::gates;
 use featherbench_bench::{Asked, Cell, Context, NoAnswer, Outcome, Study};
 use featherbench_results::{Row, Verdict};
@@ -80,14 +80,6 @@ fn what_is_not_offered_is_a_skip() {
     assert_eq!(rows::of_motion(&gates, &question, &ours, &failed)[0].verdict, Verdict::Error);
     let short = rows::of_motion(&gates, &question, &ours, &Outcome::Values(vec![1.0]));
     assert_eq!(short[0].verdict, Verdict::Error);
-}
-
-#[test]
-fn movers_have_different_names() {
-    for mover in [Mover::Own, Mover::Stepped, Mover::Engine] {
-        assert_eq!(Mover::named(mover.name()), Some(mover));
-    }
-    assert_eq!(Mover::named(""), None);
 }
 
 /// An engine that is asked and is not there has one cell, and its row says what to do.

@@ -13,9 +13,9 @@ use featherbench_dynamics::Rnea;
 use featherbench_model::Model;
 use featherbench_results::{Row, Verdict};
 use featherbench_robots::Case;
-use featherbench_study::{Entry, Made, Setup, row, unanswered};
+use featherbench_study::{Entry, row, unanswered};
 use over_best::over_best;
-use serde_json::json;
+use serde::{Deserialize, Serialize};
 
 /// The engine that all others are compared with.
 const REFERENCE: &str = OWN;
@@ -43,12 +43,12 @@ pub(crate) const QUANTITIES: [Quantity; 15] = [
 pub struct Agreement;
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "agreement", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>("agreement")?.map(|_| Box::new(Agreement) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "agreement",
+    make: |setup| setup.made("agreement", |_: NoSettings| Agreement),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 impl Study for Agreement {
     fn name(&self) -> &'static str {
@@ -101,8 +101,18 @@ pub(crate) fn asked(robot: &Robot, quantity: Quantity) -> bool {
     }
 }
 
+/// The parameters of a cell and its rows.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default)]
+struct Params {
+    base: String,
+    joints: Vec<String>,
+    states: usize,
+}
+
 fn cell(robot: &Robot, engine: &dyn Engine, quantity: Quantity, method: String) -> Cell {
-    let params = json!({"base": robot.base(), "joints": robot.joint_kinds(), "states": quantity.states(robot.states.count())});
+    let joints = robot.joint_kinds().into_iter().map(str::to_owned).collect();
+    let params = Params { base: robot.base().into(), joints, states: quantity.states(robot.states.count()) };
     Cell::new("agreement", robot, engine.identity(), quantity.name(), method, params)
 }
 

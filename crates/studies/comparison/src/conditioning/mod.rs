@@ -14,7 +14,7 @@ use featherbench_bench::truth::conditioning_bound;
 use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::mass_matrix;
 use featherbench_results::{Row, Verdict};
-use featherbench_study::{Entry, Made, Setup, row};
+use featherbench_study::{Entry, row};
 use nalgebra::DMatrix;
 use serde_json::json;
 
@@ -22,12 +22,12 @@ use serde_json::json;
 pub struct Conditioning;
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "conditioning", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>("conditioning")?.map(|_| Box::new(Conditioning) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "conditioning",
+    make: |setup| setup.made("conditioning", |_: NoSettings| Conditioning),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 /// Eigenvalues of larger matrices take minutes.
 const MOST_DOFS: usize = 600;

@@ -19,7 +19,7 @@ use featherbench_bench::truth::TrueDerivatives;
 use featherbench_bench::{Asked, Cell, Context, DENSE_LIMIT, Finished, NoAnswer, OWN, Outcome, Quantity, Robot, Study, derivative_floor};
 use featherbench_results::{Row, Verdict, canonical_json};
 use featherbench_robots::Case;
-use featherbench_study::{Entry, Made, Setup, row, unanswered};
+use featherbench_study::{Entry, row, unanswered};
 use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::json;
@@ -56,12 +56,12 @@ impl Default for Derivatives {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "derivatives", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<Derivatives>(STUDY)?.map(|study| Box::new(study) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "derivatives",
+    make: |setup| setup.made(STUDY, |study: Derivatives| study),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 impl Study for Derivatives {
     fn name(&self) -> &'static str {

@@ -9,8 +9,8 @@ pub(crate) mod words;
 
 use featherbench_bench::{Asked, Cell, Context, Finished, NoSettings, Outcome, Reproduction, SEEDS, SLACK, Study, hash};
 use featherbench_results::{Relation, Row, Verdict};
-use featherbench_study::{Entry, Made, Reproduce, Setup, case_row};
-use serde_json::json;
+use featherbench_study::{Entry, Reproduce, case_row};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The study of known deviations.
@@ -20,13 +20,12 @@ pub struct Reproductions {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "reproductions", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    let settings = setup.suite.settings::<NoSettings>("reproductions")?;
-    Ok(settings.map(|_| Box::new(Reproductions { reproduce: Arc::clone(&setup.reproduce) }) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "reproductions",
+    make: |setup| setup.made("reproductions", |_: NoSettings| Reproductions { reproduce: Arc::clone(&setup.reproduce) }),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 impl Study for Reproductions {
     fn name(&self) -> &'static str {
@@ -36,7 +35,8 @@ impl Study for Reproductions {
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let cell = |known: &Reproduction| {
             let Reproduction { name, engine, version, condition, measure, range, upstream, .. } = known;
-            let params = json!({"condition": condition, "measure": measure, "range": range, "seeds": SEEDS, "upstream": upstream});
+            let [condition, measure, upstream] = [condition, measure, upstream].map(String::clone);
+            let params = Params { condition, measure, range: *range, seeds: SEEDS, upstream };
             let cell = Cell::of_case(self.name(), name, (engine, version), "deviation", name, params);
             Cell { robot_hash: hash::of(name.as_bytes()), ..cell }
         };
@@ -55,6 +55,16 @@ impl Study for Reproductions {
         };
         finished.iter().filter_map(of).flatten().collect()
     }
+}
+
+/// The parameters of a cell and its rows.
+#[derive(Default, Serialize, Deserialize)]
+struct Params {
+    condition: String,
+    measure: String,
+    range: [f64; 2],
+    seeds: u64,
+    upstream: String,
 }
 
 fn rows(context: &Context, known: &Reproduction, cell: &Cell, outcome: &Outcome) -> Vec<Row> {

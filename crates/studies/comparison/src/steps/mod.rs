@@ -17,11 +17,12 @@ pub(crate) mod section;
 pub(crate) mod words;
 
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
-use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Stepper, Study};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Stepper, Study, params};
 use featherbench_dynamics::{energy, forward_dynamics};
 use featherbench_results::{Row, Verdict};
 use featherbench_robots::Case;
-use featherbench_study::{Entry, Made, Setup, row, unanswered};
+use featherbench_study::{Entry, row, unanswered};
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::ops::RangeInclusive;
 
@@ -42,12 +43,8 @@ const CASES: [Case; 2] = [Case::Random, Case::Fast];
 pub struct Steps;
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "steps", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>("steps")?.map(|_| Box::new(Steps) as _))
-}
+pub const ENTRY: Entry =
+    Entry { name: "steps", make: |setup| setup.made("steps", |_: NoSettings| Steps), sections: section::sections, words: words::WORDS };
 
 impl Study for Steps {
     fn name(&self) -> &'static str {
@@ -106,13 +103,9 @@ impl Study for Steps {
                 let guard = stepper.and_then(|stepper| stepper.guard()).filter(|_| acceleration && plain && !exact);
                 let regime = |dt: f64, error: f64| Some(Regime::of(dt, error, speed(robot.states.v(state)), guard?));
                 for (&dt, &value) in steps.iter().zip(values) {
-                    let mut params = json!({"dt": dt});
                     let regime = regime(dt, value);
-                    if let Some(regime) = regime {
-                        params["regime"] = regime.name().into();
-                    }
-                    let mut row = Row { metric: metric.into(), params: featherbench_results::canonical_json(&params), ..blank.clone() }
-                        .informed(value);
+                    let mut row =
+                        Row { metric: metric.into(), params: params::text(&Step { dt, regime }), ..blank.clone() }.informed(value);
                     if regime == Some(Regime::Explicit) && row.value.is_some() {
                         row.reason = EXPLICIT.into();
                     }
@@ -135,8 +128,17 @@ impl Study for Steps {
 /// The reason in the row of an explicit step.
 const EXPLICIT: &str = "the engine's energy guard left out the implicit term: this step is explicit, and begins with the true acceleration";
 
+/// The parameters of the row of a step.
+#[derive(Serialize, Deserialize)]
+struct Step {
+    dt: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    regime: Option<Regime>,
+}
+
 /// The kind of a step by an engine that has a guard.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 enum Regime {
     /// With the term that makes it implicit: the error is of first order in its length.
     Implicit,
@@ -149,13 +151,6 @@ impl Regime {
     /// first order. (From the guard on, dt·|v| is 1e-3 and more, and so is the implicit term's share.)
     fn of(dt: f64, error: f64, speed: f64, guard: f64) -> Self {
         if dt * speed >= guard && error < *STRAIGHT.start() { Self::Explicit } else { Self::Implicit }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Implicit => "implicit",
-            Self::Explicit => "explicit",
-        }
     }
 }
 
@@ -239,7 +234,7 @@ mod tests {
             (Regime::Implicit, Regime::Explicit),
             "no explicit step has an order"
         );
-        assert_eq!([Regime::Implicit, Regime::Explicit].map(Regime::name), ["implicit", "explicit"]);
+        assert_eq!(serde_json::json!([Regime::Implicit, Regime::Explicit]), serde_json::json!(["implicit", "explicit"]));
         assert_eq!((speed(&[3.0, -4.0]), speed(&[])), (5.0, 0.0));
     }
 

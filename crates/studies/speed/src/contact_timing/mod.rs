@@ -28,7 +28,7 @@ use featherbench_answers::contact::standing::Stand;
 use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, OWN, Outcome, Study};
 use featherbench_results::Row;
 use featherbench_robots::Random;
-use featherbench_study::{Entry, Made, Setup};
+use featherbench_study::Entry;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::time::Instant;
@@ -50,12 +50,12 @@ struct Settings {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "contact_timing", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<Settings>("contact_timing")?.map(|settings| Box::new(ContactTiming { settings }) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "contact_timing",
+    make: |setup| setup.made("contact_timing", |settings| ContactTiming { settings }),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 /// The study's name in rows.
 const STUDY: &str = "contact_timing";

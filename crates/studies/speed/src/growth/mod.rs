@@ -33,7 +33,7 @@ use crate::scaling::{relative_error, truth};
 use featherbench_bench::alone::{self, Ask, Measured, Question};
 use featherbench_bench::{Asked, Cell, Context, Engine, Finished, Limits, NoAnswer, OWN, Outcome, Quantity, Study};
 use featherbench_results::Row;
-use featherbench_study::{Entry, Made, Setup, no_section};
+use featherbench_study::{Entry, no_section};
 use line::{Grown, Point, Stop};
 use own::Own;
 use serde::{Deserialize, Serialize};
@@ -122,13 +122,12 @@ pub(crate) struct OfLine {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "growth", make: of_suite, sections: no_section, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    let settings = setup.suite.settings::<Settings>("growth")?;
-    Ok(settings.map(|settings| Box::new(Growth::new(settings, Arc::clone(&setup.measure))) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "growth",
+    make: |setup| setup.made("growth", |settings| Growth::new(settings, Arc::clone(&setup.measure))),
+    sections: no_section,
+    words: words::WORDS,
+};
 
 impl Growth {
     /// The study with these settings; `measure` measures in a process of its own.

@@ -15,19 +15,19 @@ use featherbench_dynamics::{Crba, Ltdl, TreeSparse};
 use featherbench_model::Description;
 use featherbench_results::{Relation, Row, Verdict};
 use featherbench_spatial::{Counted, Operations};
-use featherbench_study::{Entry, Made, Setup, no_section, row, unanswered};
+use featherbench_study::{Entry, no_section, row, unanswered};
 use serde_json::json;
 
 /// The operations study.
 pub struct OperationCounts;
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "operations", make: of_suite, sections: no_section, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>("operations")?.map(|_| Box::new(OperationCounts) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "operations",
+    make: |setup| setup.made("operations", |_: NoSettings| OperationCounts),
+    sections: no_section,
+    words: words::WORDS,
+};
 
 /// A scalar that counts is a hundred times slower; larger robots are counted in the tests of `dynamics`.
 const MOST_DOFS: usize = 1100;

@@ -31,7 +31,7 @@ pub(crate) use work::crossing;
 use crate::operations;
 use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_results::Row;
-use featherbench_study::{Entry, Made, Setup};
+use featherbench_study::Entry;
 use fill::Order;
 use serde::{Deserialize, Serialize};
 
@@ -84,12 +84,12 @@ impl Line {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "scaling", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<Settings>("scaling")?.map(|settings| Box::new(Scaling { settings }) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "scaling",
+    make: |setup| setup.made("scaling", |settings| Scaling { settings }),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 /// What a cell or a row is about: its parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,9 +1,11 @@
 //! A case: a question with a known answer, and how its numbers are judged.
 
 use crate::{case_row, unanswered};
-use featherbench_bench::{Cell, Context, NoAnswer, OWN, Outcome};
+use featherbench_bench::{Cell, Context, NoAnswer, OWN, Outcome, params};
 use featherbench_results::{Relation, Row, Verdict};
-use serde_json::{Value, json};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 /// A question with a known answer.
 pub struct Case {
@@ -68,10 +70,22 @@ pub fn failed(error: impl std::fmt::Display) -> NoAnswer {
     NoAnswer::Failed(error.to_string())
 }
 
+/// The parameters of a cell.
+#[derive(Serialize, Deserialize)]
+struct Params<C> {
+    case: C,
+    seed: u64,
+}
+
+/// What defines the case of a row; `None` if that is something else.
+pub fn defined_by<C: DeserializeOwned>(row: &Row) -> Option<C> {
+    params::of_row(row).map(|params: Params<C>| params.case)
+}
+
 impl Case {
     pub(super) fn cell(&self, study: &str, context: &Context) -> Option<Cell> {
         let identity = context.engine(OWN)?.identity();
-        let params = json!({"case": self.params, "seed": context.seed});
+        let params = Params { case: &self.params, seed: context.seed };
         Some(Cell::of_case(study, &self.name, (&identity.name, &identity.version), self.quantity, &self.method, params))
     }
 

@@ -8,7 +8,7 @@
 mod case;
 mod table;
 
-pub use case::{Case, Evaluate, Judged, Number, count, error, failed, told};
+pub use case::{Case, Evaluate, Judged, Number, count, defined_by, error, failed, told};
 pub use featherbench_spatial::{larger, largest};
 pub use table::{beside, passed, table};
 
