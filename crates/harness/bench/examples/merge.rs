@@ -6,7 +6,7 @@
 
 use featherbench_bench::run::{Opening, Run, Silent};
 use featherbench_bench::shard::{Costs, Merge, Part, Plan, Shard, ShardFile};
-use featherbench_bench::{Cell, Context, Finished, Gates, NoAnswer, OUTCOMES_NAME, Outcome, Robot, Study, provenance};
+use featherbench_bench::{Asked, Cell, Context, Finished, Gates, NoAnswer, OUTCOMES_NAME, Outcome, Robot, Study, provenance};
 use featherbench_results::{Dictionary, ModelOrigin, Relation, Row, RunInfo, Verdict, checksum_of};
 use featherbench_robots::{Family, Random};
 use std::error::Error;
@@ -44,7 +44,7 @@ impl Study for Synthetic {
         context.robots.iter().flat_map(|robot| (0..CELLS).map(move |method| cell(robot, method))).collect()
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+    fn evaluate(&self, &Asked { context, cell, .. }: &Asked) -> Outcome {
         let mut random = Random::named(context.seed, &cell.id());
         Outcome::Values((0..NUMBERS).map(|_| random.uniform(0.0, 1.0)).collect())
     }

@@ -3,7 +3,7 @@
 
 use featherbench_bench::run::{Progress, Silent, compare, evaluate, plan};
 use featherbench_bench::{
-    Cell, Context, Finished, Gates, HarnessError, Lost, NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Robot, Study,
+    Asked, Cell, Context, Finished, Gates, HarnessError, Lost, NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Robot, Study,
 };
 use featherbench_protocol::Message;
 use featherbench_results::{ModelOrigin, Row, Verdict};
@@ -61,7 +61,7 @@ impl Study for Counting {
     }
 
     /// Values that depend on the cell alone, among them both kinds of missing answers.
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+    fn evaluate(&self, &Asked { context, cell, .. }: &Asked) -> Outcome {
         let total = {
             let mut evaluated = self.evaluated.lock().unwrap();
             *evaluated.entry(cell.id()).or_default() += 1;
@@ -318,7 +318,7 @@ fn a_panic_is_the_failure_of_its_cell_alone() {
                 let reason = format!("internal error: method {method} breaks");
                 assert_eq!(*outcome, Outcome::NoAnswer(NoAnswer::Failed(reason)));
             } else {
-                assert_eq!(*outcome, Counting::default().evaluate(&context, cell));
+                assert_eq!(*outcome, Counting::default().evaluate(&Asked::of(&context, cell)));
             }
         }
         assert!(study.counts().values().all(|&count| count == 1));

@@ -15,17 +15,7 @@ pub(crate) fn gates() -> Gates {
 
 fn rows(study: &str, case: &Case, gates: &Gates, values: Vec<f64>) -> Vec<Row> {
     let context = Context { robots: &[], engines: &[], gates, seed: 1 };
-    let cell = Cell {
-        study: study.into(),
-        robot: case.name.clone(),
-        robot_hash: String::new(),
-        params: json!({"case": case.params, "seed": 1}),
-        engine: "featherbench".into(),
-        version: String::new(),
-        method: case.method.clone(),
-        quantity: case.quantity.into(),
-        scalar: "f64".into(),
-    };
+    let cell = Cell::of_case(study, &case.name, ("featherbench", ""), case.quantity, &case.method, json!({"case": case.params, "seed": 1}));
     case.rows(&context, &cell, &Outcome::Values(values))
 }
 

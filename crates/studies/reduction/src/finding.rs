@@ -8,7 +8,7 @@ use featherbench_bench::{Cell, Context, Engine, Finished, Gates, Identity, NoAns
 use featherbench_comparison::{Accuracy, Agreement, Derivatives};
 use featherbench_results::{EngineSource, ModelOrigin, Row, Verdict};
 use featherbench_robots::Case as StateCase;
-use featherbench_study::asked;
+use featherbench_study::answer;
 use serde_json::json;
 use std::collections::BTreeMap;
 
@@ -137,7 +137,7 @@ impl Finding {
 fn compared(name: &str, engine: &dyn Engine, gates: &Gates, robot: &Robot, quantity: Quantity, method: &str) -> Option<(Kind, Vec<Row>)> {
     let study = study(name)?;
     let cell = Cell::new(name, robot, engine.identity(), quantity.name(), method, json!({}));
-    let outcome = asked(engine, robot, quantity, method).into();
+    let outcome = answer(engine, robot, quantity, method).into();
     let kind = match &outcome {
         Outcome::Values(values) if values.iter().all(|x| x.is_finite()) => Kind::NoMeasure,
         Outcome::Values(_) => Kind::NotFinite,

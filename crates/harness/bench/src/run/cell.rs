@@ -1,6 +1,9 @@
 //! The cell: the unit of work.
 
 use crate::{Identity, NoAnswer, Robot, hash};
+use featherbench_results::canonical_json;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 /// One evaluation: an engine, its method, a quantity, a robot.
@@ -28,25 +31,50 @@ pub struct Cell {
 
 impl Cell {
     /// The cell in which an engine computes a quantity of a robot in `f64`.
-    pub fn new(study: &str, robot: &Robot, engine: &Identity, quantity: &str, method: impl Into<String>, params: Value) -> Self {
+    pub fn new(study: &str, robot: &Robot, engine: &Identity, quantity: &str, method: impl Into<String>, params: impl Serialize) -> Self {
+        Self {
+            robot_hash: robot.hash.clone(),
+            ..Self::of_case(study, &robot.name, (&engine.name, &engine.version), quantity, method, params)
+        }
+    }
+
+    /// The cell of a case that is no robot of the suite, in `f64`. Its parameters are all there is to it, and their hash is its own. The engine
+    /// is its name and its version.
+    pub fn of_case(
+        study: &str,
+        case: &str,
+        (engine, version): (&str, &str),
+        quantity: &str,
+        method: impl Into<String>,
+        params: impl Serialize,
+    ) -> Self {
+        let params = json!(params);
         Self {
             study: study.into(),
-            robot: robot.name.clone(),
-            robot_hash: robot.hash.clone(),
+            robot: case.into(),
+            robot_hash: hash::of(canonical_json(&params).as_bytes()),
             params,
-            engine: engine.name.clone(),
-            version: engine.version.clone(),
+            engine: engine.into(),
+            version: version.into(),
             method: method.into(),
             quantity: quantity.into(),
             scalar: "f64".into(),
         }
     }
 
+    /// Its parameters as the type that its study plans it with.
+    ///
+    /// # Errors
+    /// [`NoAnswer::Failed`] if they are of another study.
+    pub fn params<P: DeserializeOwned>(&self) -> Result<P, NoAnswer> {
+        P::deserialize(&self.params).map_err(|error| NoAnswer::Failed(format!("the parameters of this cell: {error}")))
+    }
+
     /// The cell's id: a hash of everything in it.
     pub fn id(&self) -> String {
         let Self { study, robot, robot_hash, params, engine, version, method, quantity, scalar } = self;
         let content = json!([study, robot, robot_hash, params, engine, version, method, quantity, scalar]);
-        hash::of(featherbench_results::canonical_json(&content).as_bytes())[..16].to_owned()
+        hash::of(canonical_json(&content).as_bytes())[..16].to_owned()
     }
 
     /// The cell as a path of words: `--filter` matches it, and progress shows it.
@@ -74,9 +102,7 @@ impl Outcome {
             Self::Text(_) | Self::NoAnswer(_) => None,
         }
     }
-}
 
-impl Outcome {
     /// The values, or why there are none; a text has none.
     pub fn answer(&self) -> Result<&[f64], NoAnswer> {
         match self {
@@ -90,5 +116,11 @@ impl Outcome {
 impl From<Result<Vec<f64>, NoAnswer>> for Outcome {
     fn from(result: Result<Vec<f64>, NoAnswer>) -> Self {
         result.map_or_else(Self::NoAnswer, Self::Values)
+    }
+}
+
+impl From<Result<String, NoAnswer>> for Outcome {
+    fn from(result: Result<String, NoAnswer>) -> Self {
+        result.map_or_else(Self::NoAnswer, Self::Text)
     }
 }

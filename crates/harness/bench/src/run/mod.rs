@@ -4,12 +4,13 @@
 
 pub(crate) mod cell;
 pub(crate) mod entries;
+pub mod params;
 pub mod provenance;
 pub mod shard;
 pub(crate) mod store;
 pub(crate) mod study;
 
-use crate::run::study::{Context, Finished, Study, by_robot};
+use crate::run::study::{Asked, Context, Finished, Study, by_robot};
 use crate::shard::{Shard, hash_of};
 use crate::{Cell, HarnessError, Lost, NoAnswer, Outcome, OutcomeStore, Robot};
 use featherbench_results::{Dictionary, Row, RunInfo};
@@ -324,7 +325,7 @@ fn outcomes(cells: Vec<Cell>, store: &OutcomeStore) -> Result<Vec<Finished>, Har
 
 /// A panic in an engine or study is a failure of that cell alone.
 fn guarded(study: &dyn Study, context: &Context, cell: &Cell) -> Outcome {
-    catch_unwind(AssertUnwindSafe(|| study.evaluate(context, cell))).unwrap_or_else(|panic| {
+    catch_unwind(AssertUnwindSafe(|| study.evaluate(&Asked::of(context, cell)))).unwrap_or_else(|panic| {
         let message = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
         Outcome::NoAnswer(NoAnswer::Failed(format!("internal error: {}", message.unwrap_or("panic without a message"))))
     })

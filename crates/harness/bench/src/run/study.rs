@@ -1,6 +1,6 @@
 //! The trait [`Study`]: a question, asked as cells and answered as rows.
 
-use crate::{Cell, Engine, Gates, Outcome, Robot};
+use crate::{Cell, Engine, Gates, NoAnswer, Outcome, Quantity, Robot};
 use featherbench_results::Row;
 use std::collections::BTreeMap;
 
@@ -26,6 +26,62 @@ impl Context<'_> {
     pub fn engine(&self, name: &str) -> Option<&dyn Engine> {
         self.engines.iter().find(|engine| engine.identity().name == name).map(AsRef::as_ref)
     }
+}
+
+/// What a cell asks: its robot, engine and quantity, looked up once by the run. Not every cell has all three: a study takes what it needs.
+#[derive(Clone, Copy)]
+pub struct Asked<'a> {
+    /// The data of the study.
+    pub context: &'a Context<'a>,
+    /// The cell.
+    pub cell: &'a Cell,
+    robot: Option<&'a Robot>,
+    engine: Option<&'a dyn Engine>,
+    quantity: Option<Quantity>,
+}
+
+impl<'a> Asked<'a> {
+    /// What a cell asks.
+    pub fn of(context: &'a Context<'a>, cell: &'a Cell) -> Self {
+        let (robot, engine) = (context.robot(&cell.robot), context.engine(&cell.engine));
+        Self { context, cell, robot, engine, quantity: Quantity::parse(&cell.quantity) }
+    }
+
+    /// Its robot.
+    ///
+    /// # Errors
+    /// [`NoAnswer::Failed`] if it has none.
+    pub fn robot(&self) -> Result<&'a Robot, NoAnswer> {
+        self.robot.ok_or_else(|| none("robot"))
+    }
+
+    /// Its engine.
+    ///
+    /// # Errors
+    /// [`NoAnswer::Failed`] if it is not there.
+    pub fn engine(&self) -> Result<&'a dyn Engine, NoAnswer> {
+        self.engine.ok_or_else(|| none("engine"))
+    }
+
+    /// What only some engines offer, such as steps or loops.
+    ///
+    /// # Errors
+    /// [`NoAnswer::Failed`] if the engine is not there, or does not offer it.
+    pub fn offered<T>(&self, offer: impl FnOnce(&'a dyn Engine) -> Option<T>) -> Result<T, NoAnswer> {
+        offer(self.engine()?).ok_or_else(|| NoAnswer::Failed(format!("{} does not offer what this cell asks", self.cell.engine)))
+    }
+
+    /// Its quantity, of those that every engine can be asked for.
+    ///
+    /// # Errors
+    /// [`NoAnswer::Failed`] if it is one of its study alone.
+    pub fn quantity(&self) -> Result<Quantity, NoAnswer> {
+        self.quantity.ok_or_else(|| none("quantity"))
+    }
+}
+
+fn none(what: &str) -> NoAnswer {
+    NoAnswer::Failed(format!("there is no {what} of this cell"))
 }
 
 /// A finished cell.
@@ -76,7 +132,7 @@ pub trait Study: Sync {
     }
 
     /// Evaluates one cell.
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome;
+    fn evaluate(&self, asked: &Asked) -> Outcome;
 
     /// Turns the outcomes of one robot into rows. Studies without robots of the suite have none.
     fn compare(&self, _context: &Context, _robot: &Robot, _finished: &[Finished]) -> Vec<Row> {

@@ -6,8 +6,9 @@ use super::STUDY;
 use crate::scenes::section::views;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
-use featherbench_study::known::{beside, passed, table};
+use featherbench_study::known::{beside, defined_by, passed, table};
 use maud::{Markup, html};
+use serde::Deserialize;
 
 /// Of each method: its name, and of each problem its name, iterations and a value.
 type Lines<'a> = Vec<(&'a str, Vec<(&'a str, f64, f64)>)>;
@@ -71,16 +72,27 @@ fn by_method<'a, X>(rows: &[&'a Row], quantity: &str, of: impl Fn(&'a Row) -> Op
     lines.filter(|(_, points): &(&str, Vec<X>)| !points.is_empty()).collect()
 }
 
+/// Of friction that is felt: the shape of the cone, and the heading, rad.
+#[derive(Deserialize)]
+struct Felt {
+    heading: f64,
+    section: String,
+}
+
+/// Of Painlevé's rod: its angle, rad.
+#[derive(Deserialize)]
+struct Rod {
+    angle: f64,
+}
+
 fn felt<'a>(rows: &[&'a Row]) -> Vec<(&'a str, Vec<(f64, f64)>)> {
-    let params = |row: &Row| serde_json::from_str::<serde_json::Value>(&row.params).ok();
     ["round", "inscribed", "box"]
         .into_iter()
         .map(|section| {
             let of = |row: &&&Row| row.quantity == "felt_friction" && row.metric == "over_cone";
             let point = |row: &&Row| {
-                let params = params(row)?;
-                let heading = params["case"]["heading"].as_f64()?;
-                (params["case"]["section"] == section).then_some((heading.to_degrees(), row.value?))
+                let felt: Felt = defined_by(row)?;
+                (felt.section == section).then_some((felt.heading.to_degrees(), row.value?))
             };
             (section, rows.iter().filter(of).filter_map(point).collect())
         })
@@ -91,9 +103,8 @@ fn felt<'a>(rows: &[&'a Row]) -> Vec<(&'a str, Vec<(f64, f64)>)> {
 fn existence(rows: &[&Row]) -> Vec<[f64; 4]> {
     let of = |row: &&Row| {
         (row.quantity == "existence" && row.metric == "critical_rate").then_some(())?;
-        let params: serde_json::Value = serde_json::from_str(&row.params).ok()?;
-        let angle = params["case"]["angle"].as_f64()?.to_degrees();
-        Some([angle, row.value?, beside(rows, row, "forces_below")?, beside(rows, row, "forces_above")?])
+        let rod: Rod = defined_by(row)?;
+        Some([rod.angle.to_degrees(), row.value?, beside(rows, row, "forces_below")?, beside(rows, row, "forces_above")?])
     };
     let mut angles: Vec<[f64; 4]> = rows.iter().filter_map(of).collect();
     angles.sort_by(|a, b| a[0].total_cmp(&b[0]));

@@ -16,15 +16,23 @@
 //! Tips have prefactors too, for each force. Derivations are those of `featherbench_continua::known`.
 
 use super::{Law, NoAnswer, STUDY, element, failed, largest, rod};
-use featherbench_bench::{Cell, Context, Finished, OWN, RodAnswer, RodQuestion, hash};
+use featherbench_bench::{Asked, Cell, Context, Finished, OWN, RodAnswer, RodQuestion};
 use featherbench_continua::known::{
     cantilever_root, edges_frequency_prefactor, edges_tip_prefactor, elastica, hermite_frequency_prefactor, links_frequency_prefactor,
     links_tip_prefactor, sections_frequency_prefactor, sections_tip_prefactor,
 };
 use featherbench_continua::{Hinges, Load, Settings, Solver, Status, equilibrium, fit, modes, systems};
-use featherbench_results::{Kind, Row, Verdict, canonical_json};
-use serde_json::json;
+use featherbench_results::{Kind, Row, Verdict};
+use featherbench_study::{case_row, unanswered};
+use serde::{Deserialize, Serialize};
 use std::time::Instant;
+
+/// The parameters of a cell.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Refinement {
+    pub(super) elements: usize,
+    forces: [f64; 3],
+}
 
 /// The quantity of these cells.
 pub(super) const QUANTITY: &str = "beam";
@@ -84,38 +92,29 @@ pub(super) fn plan(context: &Context, engines: &[String]) -> Vec<Cell> {
             context.engine(name).and_then(|engine| engine.rod_solver()).map(|solver| solver.rod_elements()).unwrap_or_default()
         };
         if elements.is_empty() {
-            cells.push(cell(name, &version, "none", 0));
+            cells.push(cell((name, &version), "none", 0));
         }
         for element in &elements {
-            cells.extend(refinements(element).iter().map(|count| cell(name, &version, element, *count)));
+            cells.extend(refinements(element).iter().map(|count| cell((name, &version), element, *count)));
         }
     }
     cells
 }
 
-fn cell(engine: &str, version: &str, element: &str, count: usize) -> Cell {
-    let params = json!({"elements": count, "forces": FORCES});
-    Cell {
-        study: STUDY.into(),
-        robot: format!("cantilever, n = {count}"),
-        robot_hash: hash::of(canonical_json(&params).as_bytes()),
-        params,
-        engine: engine.into(),
-        version: version.into(),
-        method: element.into(),
-        quantity: QUANTITY.into(),
-        scalar: "f64".into(),
-    }
+fn cell(engine: (&str, &str), element: &str, count: usize) -> Cell {
+    let params = Refinement { elements: count, forces: FORCES };
+    Cell::of_case(STUDY, &format!("cantilever, n = {count}"), engine, QUANTITY, element, params)
 }
 
 /// Of each force the tip's x and y, then the frequencies, then nanoseconds of a forward dynamics and of making the rod.
-pub(super) fn evaluate(context: &Context, cell: &Cell) -> Result<Vec<f64>, NoAnswer> {
+pub(super) fn evaluate(asked: &Asked) -> Result<Vec<f64>, NoAnswer> {
+    let cell = asked.cell;
     let missing = || NoAnswer::NotOffered(format!("{0} is not installed, or has no rods: `featherbench oracles install {0}`", cell.engine));
-    let count = cell.params["elements"].as_u64().unwrap_or_default() as usize;
+    let Refinement { elements: count, .. } = cell.params()?;
     let answer = if cell.engine == OWN {
         own(&cell.method, count)?
     } else {
-        let solver = context.engine(&cell.engine).and_then(|engine| engine.rod_solver()).ok_or_else(missing)?;
+        let solver = asked.offered(|engine| engine.rod_solver()).map_err(|_| missing())?;
         let forces = if has_tip(&cell.method, count) { FORCES.to_vec() } else { Vec::new() };
         let question = RodQuestion { count, length: 1.0, bending: 1.0, mass_per_length: 1.0, forces };
         solver.rod(&question, &cell.method)?
@@ -202,16 +201,12 @@ pub(super) fn rows(context: &Context, finished: &[Finished]) -> Vec<Row> {
         let blank = blank(cell, &cell.robot, QUANTITY);
         let values = match outcome.answer() {
             Ok(values) => values,
-            Err(NoAnswer::NotOffered(reason)) => {
-                rows.push(blank.without_value(Verdict::Info, reason));
-                continue;
-            }
-            Err(failure) => {
-                rows.push(blank.without_value(Verdict::Error, failure.to_string()));
+            Err(no_answer) => {
+                rows.push(unanswered(blank, &no_answer, Verdict::Info));
                 continue;
             }
         };
-        let count = cell.params["elements"].as_u64().unwrap_or_default() as usize;
+        let count = cell.params().map_or(0, |params: Refinement| params.elements);
         let forces: &[f64] = if has_tip(&cell.method, count) { &FORCES } else { &[] };
         if values.len() != 2 * forces.len() + MODES + 2 {
             rows.push(blank.without_value(Verdict::Error, format!("{} numbers came", values.len())));
@@ -250,18 +245,7 @@ fn force_name(force: f64) -> String {
 }
 
 fn blank(cell: &Cell, family: &str, quantity: &str) -> Row {
-    Row {
-        cell: cell.id(),
-        study: cell.study.clone(),
-        family: family.into(),
-        params: canonical_json(&cell.params),
-        engine: cell.engine.clone(),
-        engine_version: cell.version.clone(),
-        method: cell.method.clone(),
-        precision: cell.scalar.clone(),
-        quantity: quantity.into(),
-        ..Row::default()
-    }
+    Row { family: family.into(), quantity: quantity.into(), ..case_row(cell) }
 }
 
 fn told(blank: &Row, metric: &str, unit: &str, reference: &str) -> Row {

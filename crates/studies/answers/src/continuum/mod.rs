@@ -22,11 +22,11 @@ mod tests;
 mod vibrations;
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Study};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, Outcome, Study};
 use featherbench_continua::{Basis, Element, Fit, Hinges, Rod, Strain};
 use featherbench_results::Row;
+use featherbench_study::Entry;
 use featherbench_study::known::{Case, KnownAnswers, Number, count, error, failed, largest, told};
-use featherbench_study::{Entry, Made, Setup};
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -49,13 +49,12 @@ struct Continuum {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "continuum", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    let made = |settings| Box::new(Continuum { known: KnownAnswers::new(STUDY, cases()), settings }) as _;
-    Ok(setup.suite.settings::<Settings>(STUDY)?.map(made))
-}
+pub const ENTRY: Entry = Entry {
+    name: "continuum",
+    make: |setup| setup.made(STUDY, |settings| Continuum { known: KnownAnswers::new(STUDY, cases()), settings }),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 /// Every case of ours.
 fn cases() -> Vec<Case> {
@@ -80,8 +79,8 @@ impl Study for Continuum {
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        if cell.quantity == beams::QUANTITY { beams::evaluate(context, cell).into() } else { self.known.evaluate(context, cell) }
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        if asked.cell.quantity == beams::QUANTITY { beams::evaluate(asked).into() } else { self.known.evaluate(asked) }
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

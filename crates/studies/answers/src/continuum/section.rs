@@ -3,7 +3,8 @@
 mod drawings;
 
 use super::STUDY;
-use featherbench_bench::OWN;
+use super::beams::Refinement;
+use featherbench_bench::{OWN, params};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo, Verdict};
@@ -83,7 +84,7 @@ fn figures<'a>(rows: &[&'a Row]) -> Figures<'a> {
 
 /// The number of elements of a row's rod.
 fn elements(row: &Row) -> Option<f64> {
-    serde_json::from_str::<serde_json::Value>(&row.params).ok()?["elements"].as_f64()
+    params::of_row(row).map(|params: Refinement| params.elements as f64)
 }
 
 /// The name of an element, with the engine if it is not ours.

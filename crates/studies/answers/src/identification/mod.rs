@@ -16,22 +16,21 @@ mod tests;
 mod witness;
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Finished, NoSettings, Outcome, Study};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoSettings, Outcome, Study};
 use featherbench_results::Row;
+use featherbench_study::Entry;
 use featherbench_study::known::{Case, KnownAnswers, Number, count, error, failed, largest, told};
-use featherbench_study::{Entry, Made, Setup};
 
 /// The study's name in rows.
 const STUDY: &str = "identification";
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "identification", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    let live = setup.live;
-    Ok(setup.suite.settings::<NoSettings>(STUDY)?.map(|_| Box::new(Identification::new(live)) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "identification",
+    make: |setup| setup.made(STUDY, |_: NoSettings| Identification::new(setup.live)),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 /// Every case.
 fn cases() -> Vec<Case> {
@@ -66,8 +65,8 @@ impl Study for Identification {
         self.known.plan(context).into_iter().chain(witnesses).collect()
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        if witness::is_of(cell) { witness::evaluate(context, cell).into() } else { self.known.evaluate(context, cell) }
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        if witness::is_of(asked.cell) { witness::evaluate(asked).into() } else { self.known.evaluate(asked) }
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

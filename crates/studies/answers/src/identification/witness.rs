@@ -1,10 +1,11 @@
 //! Witnesses: the same samples through another engine's torque regressor, and what least squares make of it.
 
 use super::{STUDY, failed, largest};
-use featherbench_bench::{Cell, Context, Engine, NoAnswer, OWN, Outcome, Quantity, Robot, hash};
+use featherbench_bench::{Asked, Cell, Context, Engine, NoAnswer, OWN, Outcome, Quantity, Robot};
 use featherbench_identification::{Arm, Base, Information, Scenario, Stacking, Terms, ordinary};
-use featherbench_results::{ModelOrigin, Row, Verdict, canonical_json};
+use featherbench_results::{ModelOrigin, Row, Verdict};
 use featherbench_robots::StateBatch;
+use featherbench_study::{as_many, case_row, unanswered};
 use nalgebra::{DMatrix, DVector};
 use serde_json::json;
 
@@ -25,17 +26,7 @@ pub(super) fn plan(context: &Context) -> Vec<Cell> {
             let identity = identity.clone();
             arms().map(|arm| {
                 let params = json!({"case": {"joints": arm.joints}, "seed": context.seed});
-                Cell {
-                    study: STUDY.into(),
-                    robot: arm.name.clone(),
-                    robot_hash: hash::of(canonical_json(&params).as_bytes()),
-                    params,
-                    engine: identity.name.clone(),
-                    version: identity.version.clone(),
-                    method: method.clone(),
-                    quantity: QUANTITY.into(),
-                    scalar: "f64".into(),
-                }
+                Cell::of_case(STUDY, &arm.name, (&identity.name, &identity.version), QUANTITY, &method, params)
             })
         })
     });
@@ -46,12 +37,12 @@ pub(super) fn is_of(cell: &Cell) -> bool {
     cell.quantity == QUANTITY
 }
 
-pub(super) fn evaluate(context: &Context, cell: &Cell) -> Result<Vec<f64>, NoAnswer> {
-    let engine = context.engine(&cell.engine).ok_or_else(|| NoAnswer::Failed("the engine is not there".into()))?;
+pub(super) fn evaluate(asked: &Asked) -> Result<Vec<f64>, NoAnswer> {
+    let (engine, cell) = (asked.engine()?, asked.cell);
     let arm = arms().into_iter().find(|arm| arm.name == cell.robot).ok_or_else(|| NoAnswer::Failed("there is no such arm".into()))?;
     let scenario = Scenario::of(&arm, Terms::NONE, 80).map_err(failed)?;
     let linear = &scenario.linear;
-    let robot = Robot::new(linear.description(), "arm", ModelOrigin::Generated, 1, context.seed).map_err(failed)?;
+    let robot = Robot::new(linear.description(), "arm", ModelOrigin::Generated, 1, asked.context.seed).map_err(failed)?;
     let theirs = regressor(engine, &robot, &cell.method, &scenario)?;
     let ours = own(&scenario)?;
     let matrix_difference = largest(theirs.iter().zip(&ours).map(|(a, b)| a - b)) / largest(ours.iter().copied());
@@ -82,8 +73,8 @@ fn regressor(engine: &dyn Engine, robot: &Robot, method: &str, scenario: &Scenar
     let mut evaluation = engine.prepare(robot, Quantity::TorqueRegressor, method, &states)?;
     evaluation.run(0..count)?;
     let values = evaluation.read();
-    let due = count * nv * bodies * 10;
-    if values.len() == due { Ok(values.to_vec()) } else { Err(NoAnswer::Failed(format!("{} numbers came, {due} are due", values.len()))) }
+    as_many(values.len(), count * nv * bodies * 10)?;
+    Ok(values.to_vec())
 }
 
 fn own(scenario: &Scenario) -> Result<Vec<f64>, NoAnswer> {
@@ -99,28 +90,14 @@ fn own(scenario: &Scenario) -> Result<Vec<f64>, NoAnswer> {
 }
 
 pub(super) fn rows(context: &Context, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
-    let blank = Row {
-        cell: cell.id(),
-        study: cell.study.clone(),
-        family: cell.robot.clone(),
-        params: canonical_json(&cell.params),
-        engine: cell.engine.clone(),
-        engine_version: cell.version.clone(),
-        method: cell.method.clone(),
-        precision: cell.scalar.clone(),
-        quantity: cell.quantity.clone(),
-        reference: OWN.into(),
-        ..Row::default()
-    };
-    match outcome.answer() {
-        Ok(values) if values.len() == METRICS.len() => {
+    let blank = Row { reference: OWN.into(), ..case_row(cell) };
+    match outcome.answer().and_then(|values| as_many(values.len(), METRICS.len()).map(|()| values)) {
+        Ok(values) => {
             let row = |(metric, &value): (&&str, &f64)| {
                 context.gates.judge(Row { metric: (*metric).into(), unit: "1".into(), ..blank.clone() }, value, 1.0)
             };
             METRICS.iter().zip(values).map(row).collect()
         }
-        Ok(values) => vec![blank.without_value(Verdict::Error, format!("{} numbers came, {} are due", values.len(), METRICS.len()))],
-        Err(NoAnswer::NotOffered(reason)) => vec![blank.without_value(Verdict::Info, reason)],
-        Err(no_answer) => vec![blank.without_value(Verdict::Error, no_answer.to_string())],
+        Err(no_answer) => vec![unanswered(blank, &no_answer, Verdict::Info)],
     }
 }

@@ -13,8 +13,8 @@ pub(crate) mod words;
 
 use featherbench_bench::{NoAnswer, NoSettings};
 use featherbench_lesson::{Claim, Number, claims};
+use featherbench_study::Entry;
 use featherbench_study::known::{Case, KnownAnswers, error, failed, told};
-use featherbench_study::{Entry, Made, Setup};
 use serde_json::json;
 
 /// The study's name in rows.
@@ -26,12 +26,12 @@ const CORRECTED: &str = "corrected";
 const LESSON: &str = "lesson";
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "lesson", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>(STUDY)?.map(|_| Box::new(KnownAnswers::new(STUDY, cases())) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "lesson",
+    make: |setup| setup.made(STUDY, |_: NoSettings| KnownAnswers::new(STUDY, cases())),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 /// Every case.
 fn cases() -> Vec<Case> {

@@ -10,7 +10,7 @@ use featherbench_model::difference;
 use featherbench_spatial::smaller;
 use featherbench_study::known::{failed, largest};
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::sync::OnceLock;
 
 /// Rounds over the states of which the time is told.
@@ -20,7 +20,7 @@ const FINE: f64 = 1e-4;
 
 /// A question.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Asked {
+pub(super) enum Question {
     /// Accelerations at states on the loops.
     Accelerations(System),
     /// Accelerations beside the flat parallelogram.
@@ -56,7 +56,36 @@ pub(super) struct Judged {
     pub settings: Value,
 }
 
-impl Asked {
+/// The parameters of a question, in a cell and in its rows.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(super) struct Params {
+    pub name: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angle: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rate: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dt: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub powers: Option<Vec<i32>>,
+    /// Of a row: what the engine told.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub settings: Option<Value>,
+    /// Of a row: the angle beside the flat parallelogram.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub beside: Option<f64>,
+}
+
+/// The parameters of a cell.
+#[derive(Serialize, Deserialize)]
+pub(super) struct OfCell {
+    pub asked: Params,
+    pub seed: u64,
+}
+
+impl Question {
     /// All questions, in the order of the report.
     pub fn all() -> Vec<Self> {
         let accelerations = ACCELERATED.into_iter().map(Self::Accelerations);
@@ -110,14 +139,16 @@ impl Asked {
     }
 
     /// As parameters.
-    pub fn params(&self) -> Value {
+    pub fn params(&self) -> Params {
+        let params = Params { name: self.name(), ..Params::default() };
         match self {
             Self::Motion(plan, step) => {
                 let Plan { seconds, start, steps, .. } = PLANS[*plan];
-                json!({"name": self.name(), "seconds": seconds, "angle": start.0, "rate": start.1, "dt": steps[*step]})
+                let (angle, rate, dt) = (Some(start.0), Some(start.1), Some(steps[*step]));
+                Params { seconds: Some(seconds), angle, rate, dt, ..params }
             }
-            Self::Singular => json!({"name": self.name(), "powers": NEAR.collect::<Vec<_>>()}),
-            Self::Accelerations(_) => json!({"name": self.name()}),
+            Self::Singular => Params { powers: Some(NEAR.collect()), ..params },
+            Self::Accelerations(_) => params,
         }
     }
 

@@ -33,12 +33,11 @@ mod systems;
 mod tests;
 pub(crate) mod words;
 
-use ask::{Asked, Truths};
-use featherbench_bench::{Cell, Context, Engine, Finished, NoAnswer, OWN, Outcome, Study, hash};
-use featherbench_results::{Row, canonical_json};
-use featherbench_study::{Entry, Made, Setup};
+use ask::{OfCell, Question, Truths};
+use featherbench_bench::{Asked, Cell, Context, Engine, Finished, LoopSolver, NoAnswer, OWN, Outcome, Study};
+use featherbench_results::Row;
+use featherbench_study::Entry;
 use serde::Deserialize;
-use serde_json::json;
 
 /// The study's name in rows.
 const STUDY: &str = "loops";
@@ -66,27 +65,26 @@ struct Loops {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "loops", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    let settings = setup.suite.settings::<Settings>(STUDY)?;
-    Ok(settings.map(|settings| Box::new(Loops { settings, truths: Truths::default() }) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "loops",
+    make: |setup| setup.made(STUDY, |settings| Loops { settings, truths: Truths::default() }),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 impl Loops {
     /// What is asked of every engine.
-    fn asked(&self) -> impl Iterator<Item = Asked> {
-        Asked::all().into_iter().filter(|asked| asked.windows() <= self.settings.windows)
+    fn questions(&self) -> impl Iterator<Item = Question> {
+        Question::all().into_iter().filter(|question| question.windows() <= self.settings.windows)
     }
 
     /// The engines that hold loops, ours first, with a method of each for such a question.
-    fn candidates<'a>(&'a self, context: &'a Context, asked: &Asked) -> Vec<(&'a dyn Engine, String)> {
+    fn candidates<'a>(&'a self, context: &'a Context, question: &Question) -> Vec<(&'a dyn Engine, String)> {
         let own =
-            context.engine(OWN).into_iter().flat_map(|own| ours::methods(asked).iter().map(move |method| (own, (*method).to_owned())));
+            context.engine(OWN).into_iter().flat_map(|own| ours::methods(question).iter().map(move |method| (own, (*method).to_owned())));
         let named = self.settings.engines.iter().filter_map(|name| context.engine(name));
         let others = named.filter_map(|engine| Some((engine, engine.loop_solver()?))).flat_map(|(engine, solver)| {
-            let methods = if asked.moves() { solver.motion_methods() } else { solver.acceleration_methods() };
+            let methods = if question.moves() { solver.motion_methods() } else { solver.acceleration_methods() };
             methods.into_iter().map(move |method| (engine, method))
         });
         own.chain(others).collect()
@@ -109,40 +107,25 @@ impl Study for Loops {
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
-        for asked in self.asked() {
-            for (engine, method) in self.candidates(context, &asked) {
+        for question in self.questions() {
+            for (engine, method) in self.candidates(context, &question) {
                 let identity = engine.identity();
-                let params = json!({"asked": asked.params(), "seed": context.seed});
-                cells.push(Cell {
-                    study: STUDY.into(),
-                    robot: asked.label(),
-                    robot_hash: hash::of(canonical_json(&params).as_bytes()),
-                    params,
-                    engine: identity.name.clone(),
-                    version: identity.version.clone(),
-                    method,
-                    quantity: asked.quantity().into(),
-                    scalar: "f64".into(),
-                });
+                let params = OfCell { asked: question.params(), seed: context.seed };
+                let engine = (identity.name.as_str(), identity.version.as_str());
+                cells.push(Cell::of_case(STUDY, &question.label(), engine, question.quantity(), method, params));
             }
         }
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        let lost = || NoAnswer::Failed("there is no question or engine of this cell".into());
-        let asked = Asked::all().into_iter().find(|asked| asked.label() == cell.robot && asked.quantity() == cell.quantity);
-        let answer = asked.ok_or_else(lost).and_then(|asked| {
-            if cell.engine == OWN {
-                return asked.answer(&self.truths, &ours::Ours, &cell.method, context.seed);
-            }
-            let solver = context.engine(&cell.engine).and_then(|engine| engine.loop_solver()).ok_or_else(lost)?;
-            asked.answer(&self.truths, solver, &cell.method, context.seed)
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        let cell = asked.cell;
+        let question = Question::all().into_iter().find(|question| question.label() == cell.robot && question.quantity() == cell.quantity);
+        let answer = question.ok_or_else(|| NoAnswer::Failed("there is no question of this cell".into())).and_then(|question| {
+            let solver: &dyn LoopSolver = if cell.engine == OWN { &ours::Ours } else { asked.offered(|engine| engine.loop_solver())? };
+            question.answer(&self.truths, solver, &cell.method, asked.context.seed)
         });
-        match answer {
-            Ok(answer) => Outcome::Text(answer),
-            Err(no_answer) => Outcome::NoAnswer(no_answer),
-        }
+        answer.into()
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

@@ -1,6 +1,6 @@
 //! Our methods, behind the same trait as engines.
 
-use super::ask::Asked;
+use super::ask::Question;
 use super::drive::Driven;
 use super::systems::System;
 use featherbench_bench::{LoopAccelerations, LoopDrive, LoopMotion, LoopSolver, LoopStates, LoopSteps, NoAnswer};
@@ -21,11 +21,11 @@ const BAUMGARTE: f64 = 0.05;
 
 /// The methods for a question. Bricard's six-bar has no motion by Baumgarte's stabilisation: beside its loop the redundant row is independent, and
 /// the acceleration that it asks for contradicts the others.
-pub(super) fn methods(asked: &Asked) -> &'static [&'static str] {
-    match asked {
-        Asked::Accelerations(_) | Asked::Singular => &ACCELERATIONS,
-        Asked::Motion(..) if asked.system() == System::Bricard => &MOTIONS[..1],
-        Asked::Motion(..) => &MOTIONS,
+pub(super) fn methods(question: &Question) -> &'static [&'static str] {
+    match question {
+        Question::Accelerations(_) | Question::Singular => &ACCELERATIONS,
+        Question::Motion(..) if question.system() == System::Bricard => &MOTIONS[..1],
+        Question::Motion(..) => &MOTIONS,
     }
 }
 

@@ -1,26 +1,18 @@
 //! Rows of a cell.
 
-use super::ask::Judged;
+use super::ask::{Judged, OfCell, Params};
 use super::systems::NEAR;
-use featherbench_bench::{Cell, Gates, NoAnswer, OWN, Outcome};
-use featherbench_results::{Kind, Row, Verdict, canonical_json};
-use serde_json::{Value, json};
+use featherbench_bench::{Cell, Gates, NoAnswer, OWN, Outcome, params};
+use featherbench_results::{Kind, Row, Verdict};
+use featherbench_study::{case_row, unanswered};
 
 /// All rows of a cell. Gates judge ours: what another engine gives is a finding.
 pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
-    let asked = &cell.params["asked"];
-    let blank = Row {
-        cell: cell.id(),
-        study: cell.study.clone(),
-        family: asked["name"].as_str().unwrap_or(&cell.robot).to_owned(),
-        params: canonical_json(asked),
-        engine: cell.engine.clone(),
-        engine_version: cell.version.clone(),
-        method: cell.method.clone(),
-        precision: cell.scalar.clone(),
-        quantity: cell.quantity.clone(),
-        ..Row::default()
+    let asked = match cell.params::<OfCell>() {
+        Ok(params) => params.asked,
+        Err(no_answer) => return vec![unanswered(case_row(cell), &no_answer, Verdict::Error)],
     };
+    let blank = Row { family: asked.name.clone(), params: params::text(&asked), ..case_row(cell) };
     let judged = match outcome {
         Outcome::Text(text) => serde_json::from_str::<Judged>(text).map_err(|error| error.to_string()),
         Outcome::NoAnswer(NoAnswer::NotOffered(reason)) => {
@@ -37,16 +29,10 @@ pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
         Ok(judged) => judged,
         Err(reason) => return vec![blank.without_value(Verdict::Error, reason)],
     };
-    let params = |more: Value| {
-        let mut params = asked.clone();
-        params["settings"] = judged.settings.clone();
-        if let (Some(params), Value::Object(more)) = (params.as_object_mut(), more) {
-            params.extend(more);
-        }
-        canonical_json(&params)
-    };
-    let row = |metric: &str, unit: &str, reference: &str, value: Option<f64>, more: Value| {
-        let row = Row { metric: metric.into(), unit: unit.into(), reference: reference.into(), params: params(more), ..blank.clone() };
+    let told = Params { settings: Some(judged.settings), ..asked };
+    let blank = Row { params: params::text(&told), ..blank };
+    let of = |blank: &Row, metric: &str, unit: &str, reference: &str, value: Option<f64>| {
+        let row = Row { metric: metric.into(), unit: unit.into(), reference: reference.into(), ..blank.clone() };
         match value {
             None if cell.engine == OWN => row.without_value(Verdict::Error, "the answer is not finite"),
             None => row.without_value(Verdict::Info, "the answer is not finite"),
@@ -54,27 +40,29 @@ pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
             Some(value) => row.informed(value),
         }
     };
+    let row = |metric: &str, unit: &str, reference: &str, value: Option<f64>| of(&blank, metric, unit, reference, value);
     let moves = cell.quantity == "loop_motion";
     let mut rows = Vec::new();
     let unit = if moves { "rad" } else { "1" };
     if cell.quantity == "loop_singular" {
         for (power, value) in NEAR.zip(&judged.errors) {
-            rows.push(row("error", unit, "truth", *value, json!({"beside": 10.0_f64.powi(-power)})));
+            let params = Params { beside: Some(10.0_f64.powi(-power)), ..told.clone() };
+            rows.push(of(&Row { params: params::text(&params), ..blank.clone() }, "error", unit, "truth", *value));
         }
     } else {
-        rows.extend(judged.errors.iter().map(|value| row("error", unit, "truth", *value, json!({}))));
+        rows.extend(judged.errors.iter().map(|value| row("error", unit, "truth", *value)));
     }
     // Where a motion has left all bounds, its only row says so.
     if moves && judged.energy_drift.is_some() {
-        rows.push(row("energy_drift", "J", "begin", judged.energy_drift, json!({})));
-        rows.push(row("open", "m", "loops", judged.open, json!({})));
+        rows.push(row("energy_drift", "J", "begin", judged.energy_drift));
+        rows.push(row("open", "m", "loops", judged.open));
         if cell.engine == OWN && judged.of_steps.is_some() {
-            rows.push(row("of_steps", "rad", "closed form", judged.of_steps, json!({})));
-            rows.push(row("energy_of_steps", "J", "closed form", judged.energy_of_steps, json!({})));
+            rows.push(row("of_steps", "rad", "closed form", judged.of_steps));
+            rows.push(row("energy_of_steps", "J", "closed form", judged.energy_of_steps));
         }
     }
     let metric = if moves { "ns_per_step" } else { "ns_per_state" };
-    let time = Row { kind: Kind::Measured, metric: metric.into(), unit: "ns".into(), params: params(json!({})), ..blank.clone() };
+    let time = Row { kind: Kind::Measured, metric: metric.into(), unit: "ns".into(), ..blank.clone() };
     rows.push(time.informed(judged.nanoseconds));
     rows
 }

@@ -3,15 +3,15 @@
 mod drawings;
 
 use super::STUDY;
+use super::ask::Params;
 use super::systems::{NEAR, PLANS};
-use featherbench_bench::OWN;
+use featherbench_bench::{OWN, params};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, labels, opener};
 use featherbench_results::{Row, RunInfo, Verdict};
-use featherbench_study::known::beside;
-use featherbench_study::known::passed;
+use featherbench_study::known::{beside, passed};
+use featherbench_study::rows_of;
 use maud::{Markup, html};
-use serde_json::Value;
 
 /// A motion by steps of one length.
 struct Point<'a> {
@@ -44,9 +44,7 @@ struct Figures<'a> {
 
 /// Makes the section, if the run has rows of the study.
 pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
-    let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
-    let Some(first) = rows.first() else { return Vec::new() };
-    let chunk = overview.chunk_of(first);
+    let Some((rows, chunk)) = rows_of(rows, STUDY, overview) else { return Vec::new() };
     let figures = Figures {
         motions: PLANS.iter().filter(|plan| plan.steps.len() > 1).map(|plan| plan.name).collect(),
         points: points(&rows),
@@ -55,16 +53,12 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     vec![Section::new("loops", "Loops in engines", body(&rows, &figures, &chunk))]
 }
 
-fn params(row: &Row) -> Option<Value> {
-    serde_json::from_str(&row.params).ok()
-}
-
 fn points<'a>(rows: &[&'a Row]) -> Vec<Point<'a>> {
     let of = |row: &&'a Row| {
         (row.quantity == "loop_motion" && row.metric == "error").then_some(())?;
-        let params = params(row)?;
-        let dt = params["dt"].as_f64()?;
-        let steps = (params["seconds"].as_f64()? / dt).round();
+        let asked: Params = params::of_row(row)?;
+        let dt = asked.dt?;
+        let steps = (asked.seconds? / dt).round();
         Some(Point {
             name: &row.family,
             engine: &row.engine,
@@ -82,7 +76,8 @@ fn points<'a>(rows: &[&'a Row]) -> Vec<Point<'a>> {
 fn near<'a>(rows: &[&'a Row]) -> Vec<Near<'a>> {
     let of = |row: &&'a Row| {
         (row.quantity == "loop_singular" && row.metric == "error").then_some(())?;
-        Some(Near { engine: &row.engine, method: &row.method, beside: params(row)?["beside"].as_f64()?, error: row.value? })
+        let asked: Params = params::of_row(row)?;
+        Some(Near { engine: &row.engine, method: &row.method, beside: asked.beside?, error: row.value? })
     };
     rows.iter().filter_map(of).collect()
 }

@@ -1,6 +1,6 @@
 //! Our methods on every question but the longest, rows of answers that are wrong, and the closed form.
 
-use super::ask::{Asked, Judged, Truths};
+use super::ask::{Judged, OfCell, Question, Truths};
 use super::drive::Driven;
 use super::ours::{Ours, methods};
 use super::rows::rows;
@@ -13,25 +13,15 @@ use featherbench_results::{Row, Verdict};
 use featherbench_robots::Random;
 use serde_json::json;
 
-fn cell(asked: &Asked, engine: &str, method: &str) -> Cell {
-    Cell {
-        study: STUDY.into(),
-        robot: asked.label(),
-        robot_hash: String::new(),
-        params: json!({"asked": asked.params(), "seed": 1}),
-        engine: engine.into(),
-        version: String::new(),
-        method: method.into(),
-        quantity: asked.quantity().into(),
-        scalar: "f64".into(),
-    }
+fn cell(question: &Question, engine: &str, method: &str) -> Cell {
+    Cell::of_case(STUDY, &question.label(), (engine, ""), question.quantity(), method, OfCell { asked: question.params(), seed: 1 })
 }
 
 /// Those that take no minute: in a run of the suite all are evaluated.
-fn short(asked: &Asked) -> bool {
-    match asked {
-        Asked::Motion(plan, step) => *step + 1 == PLANS[*plan].steps.len() && asked.windows() <= 1 && PLANS[*plan].seconds < 5.0,
-        _ => asked.windows() <= 5,
+fn short(question: &Question) -> bool {
+    match question {
+        Question::Motion(plan, step) => *step + 1 == PLANS[*plan].steps.len() && question.windows() <= 1 && PLANS[*plan].seconds < 5.0,
+        _ => question.windows() <= 5,
     }
 }
 
@@ -39,17 +29,17 @@ fn short(asked: &Asked) -> bool {
 fn our_answers_are_within_their_gates() {
     let (gates, truths) = (gates(), Truths::default());
     let (mut judged, mut wrong) = (0, Vec::new());
-    for asked in Asked::all().into_iter().filter(short) {
-        for method in methods(&asked) {
-            let outcome = match asked.answer(&truths, &Ours, method, 1) {
+    for question in Question::all().into_iter().filter(short) {
+        for method in methods(&question) {
+            let outcome = match question.answer(&truths, &Ours, method, 1) {
                 Ok(text) => Outcome::Text(text),
                 Err(no_answer) => Outcome::NoAnswer(no_answer),
             };
-            for row in rows(&gates, &cell(&asked, OWN, method), &outcome) {
-                println!("{:<32} {method:<20} {:<14} {:?} {:?} {}", asked.label(), row.metric, row.value, row.bound, row.reason);
+            for row in rows(&gates, &cell(&question, OWN, method), &outcome) {
+                println!("{:<32} {method:<20} {:<14} {:?} {:?} {}", question.label(), row.metric, row.value, row.bound, row.reason);
                 judged += usize::from(row.verdict == Verdict::Pass);
                 if matches!(row.verdict, Verdict::Fail | Verdict::Error) {
-                    wrong.push((asked.label(), *method, row.metric, row.value));
+                    wrong.push((question.label(), *method, row.metric, row.value));
                 }
             }
         }
@@ -62,8 +52,8 @@ fn our_answers_are_within_their_gates() {
 #[test]
 fn wrong_answers_fail() {
     let gates = gates();
-    let verdicts = |value: Option<f64>, asked: &Asked, method: &str| -> Vec<Row> {
-        let count = if *asked == Asked::Singular { 8 } else { 1 };
+    let verdicts = |value: Option<f64>, question: &Question, method: &str| -> Vec<Row> {
+        let count = if *question == Question::Singular { 8 } else { 1 };
         let judged = Judged {
             errors: vec![value; count],
             energy_drift: value,
@@ -73,15 +63,15 @@ fn wrong_answers_fail() {
             nanoseconds: 1.0,
             settings: json!({}),
         };
-        rows(&gates, &cell(asked, OWN, method), &Outcome::Text(serde_json::to_string(&judged).unwrap()))
+        rows(&gates, &cell(question, OWN, method), &Outcome::Text(serde_json::to_string(&judged).unwrap()))
     };
     let mut failed = 0;
-    for asked in Asked::all() {
-        for method in methods(&asked) {
-            let found = verdicts(Some(1e3), &asked, method);
-            assert!(found.iter().any(|row| row.verdict == Verdict::Fail) || *method == "proximal", "{} {method}", asked.label());
+    for question in Question::all() {
+        for method in methods(&question) {
+            let found = verdicts(Some(1e3), &question, method);
+            assert!(found.iter().any(|row| row.verdict == Verdict::Fail) || *method == "proximal", "{} {method}", question.label());
             failed += found.iter().filter(|row| row.verdict == Verdict::Fail).count();
-            assert!(verdicts(None, &asked, method).iter().any(|row| row.verdict == Verdict::Error), "{} {method}", asked.label());
+            assert!(verdicts(None, &question, method).iter().any(|row| row.verdict == Verdict::Error), "{} {method}", question.label());
         }
     }
     assert!(failed > 60, "{failed}");
@@ -91,8 +81,8 @@ fn wrong_answers_fail() {
 #[test]
 fn answers_of_engines_inform() {
     let gates = gates();
-    let asked = Asked::Accelerations(System::Bricard);
-    let of = |outcome: &Outcome| rows(&gates, &cell(&asked, "other", "any"), outcome);
+    let question = Question::Accelerations(System::Bricard);
+    let of = |outcome: &Outcome| rows(&gates, &cell(&question, "other", "any"), outcome);
     let judged = Judged { errors: vec![Some(1e3)], nanoseconds: 5.0, settings: json!({"mu": 1e-6}), ..Judged::default() };
     let found = of(&Outcome::Text(serde_json::to_string(&judged).unwrap()));
     assert!(found.iter().all(|row| row.verdict == Verdict::Info && row.params.contains("\"mu\":1e-6")), "{found:#?}");
@@ -154,8 +144,8 @@ fn a_drive_is_that_of_the_squeezer() {
 /// No two questions make the same cell, and records end with the motion.
 #[test]
 fn questions_differ() {
-    let labels: std::collections::BTreeSet<_> = Asked::all().iter().map(|asked| (asked.label(), asked.quantity())).collect();
-    assert_eq!(labels.len(), Asked::all().len());
+    let labels: std::collections::BTreeSet<_> = Question::all().iter().map(|question| (question.label(), question.quantity())).collect();
+    assert_eq!(labels.len(), Question::all().len());
     for plan in &PLANS {
         for dt in plan.steps {
             let steps = plan.of(*dt);

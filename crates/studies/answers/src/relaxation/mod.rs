@@ -10,11 +10,11 @@
 pub(crate) mod words;
 
 use crate::contact::standing::Stand;
-use featherbench_bench::{Cell, ContactProblems, Context, Finished, NoAnswer, OWN, Outcome, Study, hash};
+use featherbench_bench::{Asked, Cell, ContactProblems, Context, Finished, NoAnswer, OWN, Outcome, Study};
 use featherbench_contact::{Convex, Friction, Problem, Solver, systems};
-use featherbench_results::{Row, Verdict, canonical_json};
+use featherbench_results::{Row, Verdict};
 use featherbench_study::known::{failed, largest};
-use featherbench_study::{Entry, Made, Setup, no_section};
+use featherbench_study::{Entry, case_row, no_section, unanswered};
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 use serde_json::json;
@@ -40,12 +40,12 @@ struct Relaxation {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "relaxation", make: of_suite, sections: no_section, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<Settings>(STUDY)?.map(|settings| Box::new(Relaxation { settings }) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "relaxation",
+    make: |setup| setup.made(STUDY, |settings| Relaxation { settings }),
+    sections: no_section,
+    words: words::WORDS,
+};
 
 /// The names of all sets of problems: of the crate, and of standing robots.
 fn names() -> Vec<String> {
@@ -110,10 +110,9 @@ fn nonzero(scale: f64) -> f64 {
 }
 
 /// Of an engine's method: how many problems it was asked, and the largest difference.
-fn compared(context: &Context, cell: &Cell) -> Result<Vec<f64>, NoAnswer> {
-    let lost = || NoAnswer::Failed(format!("{} solves no relaxation", cell.engine));
-    let solver = context.engine(&cell.engine).and_then(|engine| engine.contact_solver()).ok_or_else(lost)?;
-    let relaxed = problems(&cell.robot, context.seed)?.iter().map(Relaxed::of).collect::<Result<Vec<_>, _>>()?;
+fn compared(asked: &Asked) -> Result<Vec<f64>, NoAnswer> {
+    let solver = asked.offered(|engine| engine.contact_solver())?;
+    let relaxed = problems(&asked.cell.robot, asked.context.seed)?.iter().map(Relaxed::of).collect::<Result<Vec<_>, _>>()?;
     let Some(first) = relaxed.first() else { return Err(NoAnswer::Failed("there is no problem of this name".into())) };
     let mut given = ContactProblems { count: relaxed.len(), contacts: first.friction.len(), ..ContactProblems::default() };
     for one in &relaxed {
@@ -122,7 +121,7 @@ fn compared(context: &Context, cell: &Cell) -> Result<Vec<f64>, NoAnswer> {
         given.free.extend(one.free.iter());
         given.friction.extend(&one.friction);
     }
-    let mut prepared = solver.prepare_contacts(&given, &cell.method, TOLERANCE, ITERATIONS)?;
+    let mut prepared = solver.prepare_contacts(&given, &asked.cell.method, TOLERANCE, ITERATIONS)?;
     prepared.run(0..given.count)?;
     let answers = prepared.read().chunks_exact(3 * given.contacts);
     if answers.len() != given.count {
@@ -147,24 +146,14 @@ impl Study for Relaxation {
             let methods = engine.contact_solver().map(|solver| solver.contact_relaxations()).unwrap_or_default();
             for (method, name) in methods.iter().flat_map(|method| names().into_iter().map(move |name| (method, name))) {
                 let params = json!({"tolerance": TOLERANCE, "seed": context.seed});
-                cells.push(Cell {
-                    study: STUDY.into(),
-                    robot_hash: hash::of(canonical_json(&params).as_bytes()),
-                    robot: name,
-                    params,
-                    engine: identity.name.clone(),
-                    version: identity.version.clone(),
-                    method: method.clone(),
-                    quantity: QUANTITY.into(),
-                    scalar: "f64".into(),
-                });
+                cells.push(Cell::of_case(STUDY, &name, (&identity.name, &identity.version), QUANTITY, method, params));
             }
         }
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        compared(context, cell).into()
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        compared(asked).into()
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
@@ -173,21 +162,7 @@ impl Study for Relaxation {
 }
 
 fn rows(context: &Context, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
-    let blank = Row {
-        cell: cell.id(),
-        study: STUDY.into(),
-        family: cell.robot.clone(),
-        params: canonical_json(&cell.params),
-        engine: cell.engine.clone(),
-        engine_version: cell.version.clone(),
-        method: cell.method.clone(),
-        precision: cell.scalar.clone(),
-        quantity: QUANTITY.into(),
-        metric: "difference".into(),
-        unit: "1".into(),
-        reference: OWN.into(),
-        ..Row::default()
-    };
+    let blank = Row { metric: "difference".into(), unit: "1".into(), reference: OWN.into(), ..case_row(cell) };
     match outcome.answer() {
         Ok(&[count, apart]) => {
             let told = Row { metric: "problems".into(), reference: String::new(), ..blank.clone() };
@@ -195,8 +170,7 @@ fn rows(context: &Context, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
         }
         Ok(_) => vec![blank.without_value(Verdict::Error, "two numbers are due")],
         // A contact that the relaxation does not have: nothing is due.
-        Err(NoAnswer::NotOffered(reason)) => vec![blank.without_value(Verdict::Info, reason)],
-        Err(no_answer) => vec![blank.without_value(Verdict::Error, no_answer.to_string())],
+        Err(no_answer) => vec![unanswered(blank, &no_answer, Verdict::Info)],
     }
 }
 
@@ -243,17 +217,7 @@ mod tests {
     fn wrong_velocities_fail() {
         let gates = gates();
         let context = Context { robots: &[], engines: &[], gates: &gates, seed: 1 };
-        let cell = Cell {
-            study: STUDY.into(),
-            robot: "stack_two".into(),
-            robot_hash: String::new(),
-            params: json!({}),
-            engine: "clarabel".into(),
-            version: String::new(),
-            method: "impulses".into(),
-            quantity: QUANTITY.into(),
-            scalar: "f64".into(),
-        };
+        let cell = Cell::of_case(STUDY, "stack_two", ("clarabel", ""), QUANTITY, "impulses", json!({}));
         let verdict = |values: Vec<f64>| rows(&context, &cell, &Outcome::Values(values))[0].verdict;
         assert_eq!(verdict(vec![1.0, 1e-7]), Verdict::Pass);
         assert_eq!(verdict(vec![1.0, 1e-3]), Verdict::Fail);

@@ -9,25 +9,34 @@
 
 use super::STUDY;
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, OWN, Quantity, Robot, WithResidual};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, OWN, Quantity, Robot, WithResidual};
 use featherbench_dynamics::inverse_dynamics;
 use featherbench_formats::neutral;
 use featherbench_residuals::{Described, Payload, Residual, SmoothCoulomb, State, Sum, Viscous, Zero};
 use featherbench_results::{Relation, Row, Verdict};
-use featherbench_study::{asked, row};
-use serde_json::{Value, json};
+use featherbench_study::known::failed;
+use featherbench_study::{answer, row, unanswered};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 const RESIDUALS: [&str; 3] = ["zero", "friction", "payload and friction"];
 /// The residual of the robot's own description.
 const DESCRIBED: &str = "described";
 
 /// What defines the residual of a cell. A robot's hash is that of its rigid bodies, so its own residuals are written out as its file has them.
-fn params(robot: &Robot, residual: &str) -> Value {
-    if residual != DESCRIBED {
-        return json!({"residual": residual});
+#[derive(Serialize, Deserialize)]
+struct Params {
+    residual: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    residuals: Option<Value>,
+}
+
+impl Params {
+    fn of(robot: &Robot, residual: &str) -> Self {
+        let written = || neutral::to_string(&robot.description).ok().and_then(|text| serde_json::from_str::<Value>(&text).ok());
+        let residuals = (residual == DESCRIBED).then(|| written().map_or(Value::Null, |file| file["residuals"].clone()));
+        Self { residual: residual.into(), residuals }
     }
-    let written = neutral::to_string(&robot.description).ok().and_then(|text| serde_json::from_str::<Value>(&text).ok());
-    json!({"residual": residual, "residuals": written.map_or(Value::Null, |file| file["residuals"].clone())})
 }
 
 /// A cell per engine, robot, residual and quantity, by the engine's usual method.
@@ -37,8 +46,9 @@ pub(super) fn plan(context: &Context) -> Vec<Cell> {
         for engine in context.engines {
             for quantity in [Quantity::InverseDynamics, Quantity::ForwardDynamics] {
                 if let Some(method) = engine.methods(quantity).first() {
-                    let of =
-                        |residual| Cell::new(STUDY, robot, engine.identity(), quantity.name(), method.as_str(), params(robot, residual));
+                    let of = |residual| {
+                        Cell::new(STUDY, robot, engine.identity(), quantity.name(), method.as_str(), Params::of(robot, residual))
+                    };
                     cells.extend(RESIDUALS.map(of));
                     cells.extend((!robot.description.residuals.is_empty()).then(|| of(DESCRIBED)));
                 }
@@ -46,10 +56,6 @@ pub(super) fn plan(context: &Context) -> Vec<Cell> {
         }
     }
     cells
-}
-
-fn failed(error: impl std::fmt::Display) -> NoAnswer {
-    NoAnswer::Failed(error.to_string())
 }
 
 /// The residual of a robot by its name.
@@ -73,14 +79,13 @@ fn residual(robot: &Robot, name: &str) -> Result<Box<dyn Residual>, NoAnswer> {
 }
 
 /// Of zero: how many numbers have other bits. Of others: the error of each state.
-pub(super) fn evaluate(context: &Context, robot: &Robot, cell: &Cell) -> Result<Vec<f64>, NoAnswer> {
-    let engine = context.engine(&cell.engine).ok_or_else(|| failed("there is no engine of this cell"))?;
-    let quantity = Quantity::parse(&cell.quantity).ok_or_else(|| failed("there is no quantity of this cell"))?;
-    let name = cell.params["residual"].as_str().unwrap_or_default();
-    let residual = residual(robot, name)?;
-    let found = asked(&WithResidual::new(engine, residual.as_ref()), robot, quantity, &cell.method)?;
+pub(super) fn evaluate(asked: &Asked, robot: &Robot) -> Result<Vec<f64>, NoAnswer> {
+    let (engine, quantity, cell) = (asked.engine()?, asked.quantity()?, asked.cell);
+    let name = cell.params::<Params>()?.residual;
+    let residual = residual(robot, &name)?;
+    let found = answer(&WithResidual::new(engine, residual.as_ref()), robot, quantity, &cell.method)?;
     if name == "zero" {
-        let nominal = asked(engine, robot, quantity, &cell.method)?;
+        let nominal = answer(engine, robot, quantity, &cell.method)?;
         return Ok(vec![nominal.iter().zip(&found).filter(|(a, b)| a.to_bits() != b.to_bits()).count() as f64]);
     }
     let (states, nv) = (&robot.states, robot.states.nv);
@@ -114,7 +119,7 @@ pub(super) fn rows(context: &Context, robot: &Robot, finished: &[Finished]) -> V
     let of = |(cell, outcome): &Finished| {
         let blank = Row { unit: "1".into(), ..row(cell, robot) };
         match outcome.answer() {
-            Ok(&[changed]) if cell.params["residual"] == "zero" => {
+            Ok(&[changed]) if cell.params().is_ok_and(|params: Params| params.residual == "zero") => {
                 let row = Row { metric: "changed_bits".into(), reference: cell.engine.clone(), ..blank };
                 context.gates.explain(row.gated(changed, Relation::Eq, 0.0))
             }
@@ -124,10 +129,7 @@ pub(super) fn rows(context: &Context, robot: &Robot, finished: &[Finished]) -> V
                 let row = Row { metric: metric.into(), reference: OWN.into(), ..blank };
                 context.gates.judge(row, errors.iter().copied().fold(0.0, worst), 1.0)
             }
-            Err(no_answer) => {
-                let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
-                context.gates.explain(blank.without_value(verdict, no_answer.to_string()))
-            }
+            Err(no_answer) => context.gates.explain(unanswered(blank, &no_answer, Verdict::Skip)),
         }
     };
     finished.iter().map(of).collect()

@@ -21,22 +21,22 @@ pub(crate) mod section;
 mod tests;
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Finished, NoSettings, Outcome, Robot, Study};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoSettings, Outcome, Robot, Study};
 use featherbench_learning::Arm;
 use featherbench_results::Row;
+use featherbench_study::Entry;
 use featherbench_study::known::{Case, KnownAnswers, Number, count, error, failed, largest, told};
-use featherbench_study::{Entry, Made, Setup};
 
 /// The study's name in rows.
 const STUDY: &str = "residuals";
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "residuals", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>(STUDY)?.map(|_| Box::new(Residuals { known: KnownAnswers::new(STUDY, cases()) }) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "residuals",
+    make: |setup| setup.made(STUDY, |_: NoSettings| Residuals { known: KnownAnswers::new(STUDY, cases()) }),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 /// Every case with a known answer.
 fn cases() -> Vec<Case> {
@@ -62,10 +62,10 @@ impl Study for Residuals {
         self.known.plan(context).into_iter().chain(engines::plan(context)).collect()
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        match context.robot(&cell.robot) {
-            Some(robot) => engines::evaluate(context, robot, cell).into(),
-            None => self.known.evaluate(context, cell),
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        match asked.robot() {
+            Ok(robot) => engines::evaluate(asked, robot).into(),
+            Err(_) => self.known.evaluate(asked),
         }
     }
 

@@ -7,9 +7,9 @@
 //! An engine's ground is a spring of stiffness k. Its own derivative is off by −(∂ż/∂x₀) π √(m/k) in z (`guide/studies/scenes.md`, "Derivative of a bounce"): the row
 //! `spring_share` says how much of the error that is. What is left comes from steps that do not meet the instant of the impact.
 
-use super::rows::{blank, without_answer};
+use super::rows::{Told, blank, without_answer};
 use super::{BOUNCE, cell, of_engine};
-use featherbench_bench::{Cell, Context, Gates, NoAnswer, OWN, Outcome};
+use featherbench_bench::{Asked, Cell, Context, Gates, NoAnswer, OWN, Outcome};
 use featherbench_hybrid::systems::BouncingBall;
 use featherbench_hybrid::{Settings, Start, sensitivity, simulate};
 use featherbench_results::{Row, Verdict};
@@ -58,15 +58,14 @@ pub(super) fn plan(context: &Context) -> Vec<Cell> {
 }
 
 /// Six numbers of each case: z, ż, and the derivative row by row.
-pub(super) fn evaluate(context: &Context, cell: &Cell) -> Result<Vec<f64>, NoAnswer> {
-    if cell.engine == OWN {
+pub(super) fn evaluate(asked: &Asked) -> Result<Vec<f64>, NoAnswer> {
+    if asked.cell.engine == OWN {
         return own();
     }
-    let engine = context.engine(&cell.engine).and_then(|engine| engine.scene_engine());
-    let engine = engine.ok_or_else(|| NoAnswer::Failed("the engine of this cell moves no scenes".into()))?;
+    let engine = asked.offered(|engine| engine.scene_engine())?;
     let mut values = Vec::new();
     for (stiffness, dt) in CASES {
-        let found = engine.differentiate(&scene(), &cell.method, stiffness, dt, (DURATION / dt).round() as usize)?;
+        let found = engine.differentiate(&scene(), &asked.cell.method, stiffness, dt, (DURATION / dt).round() as usize)?;
         values.extend([found.state[0] - RADIUS, found.state[1]]);
         values.extend(found.matrix.as_flattened());
     }
@@ -106,7 +105,9 @@ pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
     };
     let mut rows = Vec::new();
     for (&(stiffness, dt), found) in cases.iter().zip(values.chunks_exact(6)) {
-        let params = if own { cell.params.clone() } else { json!({"settings": cell.params["settings"], "stiffness": stiffness, "dt": dt}) };
+        let settings = cell.params["settings"].clone();
+        let told = Told { scene: None, duration: None, settings, dt: Some(dt), stiffness: Some(stiffness) };
+        let params = if own { cell.params.clone() } else { json!(told) };
         let of = |metric: &str, unit: &str| Row {
             metric: metric.into(),
             unit: unit.into(),

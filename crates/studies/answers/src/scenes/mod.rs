@@ -19,13 +19,13 @@ pub(crate) mod section;
 mod tests;
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Finished, Identity, NoAnswer, Outcome, Study, hash};
-use featherbench_results::{Row, canonical_json};
+use featherbench_bench::{Asked, Cell, Context, Finished, Identity, NoAnswer, Outcome, Study};
+use featherbench_results::Row;
 use featherbench_scenes::{Question, systems};
-use featherbench_study::{Entry, Made, Setup};
+use featherbench_study::Entry;
 use movers::Mover;
-use serde::Deserialize;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
 
 /// The study's name in rows.
 const STUDY: &str = "scenes";
@@ -52,18 +52,39 @@ struct Settings {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "scenes", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    let settings = setup.suite.settings::<Settings>(STUDY)?;
-    Ok(settings.map(|settings| Box::new(Scenes { settings, questions: systems::all() }) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "scenes",
+    make: |setup| setup.made(STUDY, |settings| Scenes { settings, questions: systems::all() }),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 impl Scenes {
     fn question(&self, cell: &Cell) -> Option<&Question> {
         self.questions.iter().find(|question| question.scene.name == cell.robot)
     }
+
+    /// Every measure of the motion at each step.
+    fn moved(&self, asked: &Asked) -> Result<Vec<f64>, NoAnswer> {
+        let lost = || NoAnswer::Failed("there is no scene of this cell".into());
+        let (question, engine) = (self.question(asked.cell).ok_or_else(lost)?, asked.engine()?);
+        let Moved { mover, .. } = asked.cell.params()?;
+        let mut values = Vec::new();
+        for &dt in &question.dts {
+            let motion = mover.simulate(engine, question, &asked.cell.method, dt)?;
+            values.extend(question.measures.iter().map(|measure| measure.of(&motion)));
+        }
+        Ok(values)
+    }
+}
+
+/// The parameters of a motion.
+#[derive(Serialize, Deserialize)]
+struct Moved {
+    scene: Value,
+    settings: Map<String, Value>,
+    steps: Vec<f64>,
+    mover: Mover,
 }
 
 /// An engine's name and version.
@@ -72,18 +93,8 @@ fn of_engine(identity: &Identity) -> (&str, &str) {
 }
 
 /// A cell that belongs to no robot.
-fn cell(scene: &str, (engine, version): (&str, &str), method: &str, quantity: &str, params: Value) -> Cell {
-    Cell {
-        study: STUDY.into(),
-        robot: scene.into(),
-        robot_hash: hash::of(canonical_json(&params).as_bytes()),
-        params,
-        engine: engine.into(),
-        version: version.into(),
-        method: method.into(),
-        quantity: quantity.into(),
-        scalar: "f64".into(),
-    }
+fn cell(scene: &str, engine: (&str, &str), method: &str, quantity: &str, params: Value) -> Cell {
+    Cell::of_case(STUDY, scene, engine, quantity, method, params)
 }
 
 impl Study for Scenes {
@@ -110,8 +121,8 @@ impl Study for Scenes {
             for (mover, variant) in movers::of(engine.as_ref()) {
                 for question in &self.questions {
                     let scene = json!({"parameters": question.params, "duration": question.duration, "scene": question.scene});
-                    let params = json!({"scene": scene, "settings": variant.settings, "steps": question.dts, "mover": mover.name()});
-                    cells.push(cell(&question.scene.name, of_engine(identity), &variant.name, MOTION, params));
+                    let params = Moved { scene, settings: variant.settings.clone(), steps: question.dts.to_vec(), mover };
+                    cells.push(cell(&question.scene.name, of_engine(identity), &variant.name, MOTION, json!(params)));
                 }
             }
         }
@@ -119,23 +130,16 @@ impl Study for Scenes {
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        let cell = asked.cell;
         if cell.quantity == BOUNCE {
-            return bounce::evaluate(context, cell).into();
+            return bounce::evaluate(asked).into();
         }
         if cell.method == NONE {
             let hint = format!("{0} is not installed, or moves no scenes: `featherbench oracles install {0}`", cell.engine);
             return Outcome::NoAnswer(NoAnswer::NotOffered(hint));
         }
-        let lost = |what: &str| Outcome::NoAnswer(NoAnswer::Failed(format!("there is no {what} of this cell")));
-        let Some(question) = self.question(cell) else { return lost("scene") };
-        let Some(engine) = context.engine(&cell.engine) else { return lost("engine") };
-        let Some(mover) = Mover::named(cell.params["mover"].as_str().unwrap_or_default()) else { return lost("mover") };
-        let values = question.dts.iter().map(|&dt| {
-            let motion = mover.simulate(engine, question, &cell.method, dt)?;
-            Ok(question.measures.iter().map(|measure| measure.of(&motion)).collect::<Vec<_>>())
-        });
-        values.collect::<Result<Vec<_>, NoAnswer>>().map(|values| values.concat()).into()
+        self.moved(asked).into()
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

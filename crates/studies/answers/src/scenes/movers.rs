@@ -3,9 +3,11 @@
 use featherbench_bench::{ContactProblems, ContactSolver, Engine, NoAnswer, OWN};
 use featherbench_scenes::{Motion, OwnSolver, Question, StepProblem, StepSolver, Variant, simulate};
 use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
 
 /// A way to move a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub(super) enum Mover {
     /// Our step with our solver.
     Own,
@@ -24,18 +26,6 @@ const CAP: usize = 2000;
 const SAMPLES: usize = 20;
 
 impl Mover {
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Own => "own",
-            Self::Stepped => "stepped",
-            Self::Engine => "engine",
-        }
-    }
-
-    pub(super) fn named(name: &str) -> Option<Self> {
-        [Self::Own, Self::Stepped, Self::Engine].into_iter().find(|mover| mover.name() == name)
-    }
-
     /// The motion of a scene by a variant.
     pub(super) fn simulate(self, engine: &dyn Engine, question: &Question, variant: &str, dt: f64) -> Result<Motion, NoAnswer> {
         let (scene, steps) = (&question.scene, question.steps(dt));

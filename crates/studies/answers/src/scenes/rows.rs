@@ -1,26 +1,31 @@
 //! Rows of a scene by a variant.
 
 use super::MOTION;
-use featherbench_bench::{Cell, Gates, NoAnswer, OWN, Outcome};
-use featherbench_results::{Row, Verdict, canonical_json};
+use featherbench_bench::{Cell, Gates, NoAnswer, OWN, Outcome, params};
+use featherbench_results::{Row, Verdict};
 use featherbench_scenes::{Fit, Measure, Question, SoftContact, block_step_felt};
+use featherbench_study::case_row;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::f64::consts::SQRT_2;
 
+/// The parameters of a row: those of the scene, the engine's settings, the step in s, and the stiffness of a bounce in N/m.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Told {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scene: Option<Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub duration: Option<f64>,
+    pub settings: Value,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dt: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stiffness: Option<f64>,
+}
+
 /// The fields of all rows of a cell. Its `params` tell the scene's parameters and the engine's settings.
-pub(super) fn blank(cell: &Cell, params: &Value) -> Row {
-    Row {
-        cell: cell.id(),
-        study: cell.study.clone(),
-        family: cell.robot.clone(),
-        params: canonical_json(params),
-        engine: cell.engine.clone(),
-        engine_version: cell.version.clone(),
-        method: cell.method.clone(),
-        precision: cell.scalar.clone(),
-        quantity: cell.quantity.clone(),
-        ..Row::default()
-    }
+pub(super) fn blank(cell: &Cell, params: &impl Serialize) -> Row {
+    Row { params: params::text(params), ..case_row(cell) }
 }
 
 /// The row of a cell without an answer. What an engine does not offer is a skip; our own lack of an answer is an error, and another engine's
@@ -46,12 +51,12 @@ fn is_reference(row: &Row) -> bool {
 
 /// Of each measure its value and error at each step, the bias at dt → 0, and a law's error where one is known.
 pub(super) fn of_motion(gates: &Gates, question: &Question, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
-    let params = |dt: Option<f64>| {
-        let mut params = json!({"scene": question.params, "duration": question.duration, "settings": cell.params["settings"]});
-        if let Some(dt) = dt {
-            params["dt"] = dt.into();
-        }
-        params
+    let params = |dt: Option<f64>| Told {
+        scene: Some(question.params.clone()),
+        duration: Some(question.duration),
+        settings: cell.params["settings"].clone(),
+        dt,
+        stiffness: None,
     };
     let values = match outcome.answer() {
         Ok(values) => values,

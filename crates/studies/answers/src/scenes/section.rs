@@ -3,8 +3,9 @@
 mod drawings;
 
 use super::drawing::drawing;
+use super::rows::Told;
 use super::{BOUNCE, STUDY};
-use featherbench_bench::OWN;
+use featherbench_bench::{OWN, params};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, opener};
 use featherbench_results::{Row, RunInfo, Verdict};
@@ -45,11 +46,6 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     vec![Section { parts, ..Section::new("scenes", "Scenes", body(&rows, &figures, &questions, &chunk)) }]
 }
 
-/// A number of a row's parameters.
-fn param(row: &Row, path: &str) -> Option<f64> {
-    serde_json::from_str::<serde_json::Value>(&row.params).ok()?.pointer(path)?.as_f64()
-}
-
 /// The rows of a number at the finest step of its scene: the last of several.
 fn finest<'a, 'b>(rows: &'b [&'a Row], quantity: &'b str, metric: &'b str) -> impl Iterator<Item = &'a Row> + 'b {
     let of: Vec<&'a Row> = rows.iter().filter(|row| row.quantity == quantity && row.metric == metric).copied().collect();
@@ -60,7 +56,8 @@ fn finest<'a, 'b>(rows: &'b [&'a Row], quantity: &'b str, metric: &'b str) -> im
 fn rose<'a>(rows: &[&'a Row]) -> Vec<Line<'a>> {
     let mut lines: Vec<Line> = Vec::new();
     for row in finest(rows, "felt_friction", "value") {
-        let (Some(heading), Some(value)) = (param(row, "/scene/heading"), row.value) else { continue };
+        let heading = params::of_row(row).and_then(|told: Told| told.scene?["heading"].as_f64());
+        let (Some(heading), Some(value)) = (heading, row.value) else { continue };
         let point = (heading.to_degrees(), value);
         match lines.iter_mut().find(|line| line.engine == row.engine && line.method == row.method) {
             Some(line) => line.points.push(point),
@@ -95,7 +92,7 @@ fn question_of(row: &Row) -> String {
 fn errors<'a>(rows: &[&'a Row]) -> Vec<Errors<'a>> {
     let mut found: Vec<Errors> = Vec::new();
     for row in rows.iter().filter(|row| row.metric == "error") {
-        let (Some(dt), Some(value)) = (param(row, "/dt"), row.value) else { continue };
+        let (Some(Told { dt: Some(dt), .. }), Some(value)) = (params::of_row(row), row.value) else { continue };
         let question = question_of(row);
         let at = found.iter().position(|errors| errors.question == question).unwrap_or_else(|| {
             found.push(Errors { question, lines: Vec::new() });
@@ -113,7 +110,8 @@ fn errors<'a>(rows: &[&'a Row]) -> Vec<Errors<'a>> {
 fn bounce<'a>(rows: &[&'a Row]) -> Vec<Line<'a>> {
     let mut lines: Vec<Line> = Vec::new();
     for row in rows.iter().filter(|row| row.quantity == BOUNCE && row.metric == "derivative_error") {
-        let (Some(dt), Some(stiffness), Some(value)) = (param(row, "/dt"), param(row, "/stiffness"), row.value) else { continue };
+        let Some(Told { dt: Some(dt), stiffness: Some(stiffness), .. }) = params::of_row(row) else { continue };
+        let Some(value) = row.value else { continue };
         let method = format!("{}, k = {}", row.method, short(stiffness));
         match lines.iter_mut().find(|line| line.engine == row.engine && line.method == method) {
             Some(line) => line.points.push((dt, value)),

@@ -1,8 +1,8 @@
 //! The study of scenes: rows of good and bad answers, laws, and our own answers.
 
-use super::{MOTION, NONE, Scenes, Settings, cell, movers::Mover, rows};
+use super::{MOTION, NONE, Scenes, Settings, cell, rows};
 use crate::tests::gates;
-use featherbench_bench::{Cell, Context, NoAnswer, Outcome, Study};
+use featherbench_bench::{Asked, Cell, Context, NoAnswer, Outcome, Study};
 use featherbench_results::{Row, Verdict};
 use featherbench_scenes::{Question, systems};
 use serde_json::json;
@@ -82,14 +82,6 @@ fn what_is_not_offered_is_a_skip() {
     assert_eq!(short[0].verdict, Verdict::Error);
 }
 
-#[test]
-fn movers_have_different_names() {
-    for mover in [Mover::Own, Mover::Stepped, Mover::Engine] {
-        assert_eq!(Mover::named(mover.name()), Some(mover));
-    }
-    assert_eq!(Mover::named(""), None);
-}
-
 /// An engine that is asked and is not there has one cell, and its row says what to do.
 #[test]
 fn an_absent_engine_is_a_row() {
@@ -99,7 +91,7 @@ fn an_absent_engine_is_a_row() {
     let context = Context { robots: &[], engines: &[], gates: &gates, seed: 1 };
     let cells = study.plan(&context);
     assert!(cells.len() == 2 && cells.iter().all(|cell| cell.method == NONE));
-    let finished: Vec<_> = cells.into_iter().map(|cell| (cell.clone(), study.evaluate(&context, &cell))).collect();
+    let finished: Vec<_> = cells.into_iter().map(|cell| (cell.clone(), study.evaluate(&Asked::of(&context, &cell)))).collect();
     let rows = study.compare_all(&context, &finished);
     for (row, engine) in rows.iter().zip(["rapier", "dart"]) {
         assert!(row.engine == engine && row.verdict == Verdict::Skip && row.value.is_none(), "{row:?}");

@@ -9,6 +9,7 @@ use featherbench_hybrid::systems::BouncingBall;
 use featherbench_hybrid::{Settings, Start, simulate};
 use featherbench_model::Distribution;
 use featherbench_uncertainty::{Recurrence, Sampling, Space, Variable, mixture, normal_cdf};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 const GRAVITY: f64 = 9.81;
@@ -186,6 +187,13 @@ fn linearised() -> Case {
     }
 }
 
+/// A bin of v: its middle and its width, m/s.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Bin {
+    pub(super) velocity: f64,
+    width: f64,
+}
+
 /// The density of v after an impact, in a bin: counts against the probability of the bin.
 fn density(bin: u32) -> Case {
     let width = (RANGE[1] - RANGE[0]) / f64::from(BINS);
@@ -194,7 +202,7 @@ fn density(bin: u32) -> Case {
         name: format!("drop, {:.4} m/s", 0.5 * (ends[0] + ends[1])),
         quantity: "drop_density",
         method: "monte_carlo".into(),
-        params: json!({"velocity": 0.5 * (ends[0] + ends[1]), "width": width}),
+        params: json!(Bin { velocity: 0.5 * (ends[0] + ends[1]), width }),
         numbers: vec![error("count_deviation", "closed form"), told("density", "s/m"), told("known_density", "s/m")],
         evaluate: Box::new(move |seed| {
             let inside = |v: f64| v >= ends[0] && v < ends[1];

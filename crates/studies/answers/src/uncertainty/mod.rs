@@ -19,19 +19,19 @@ mod torques;
 pub(crate) mod words;
 
 use featherbench_bench::NoSettings;
+use featherbench_study::Entry;
 use featherbench_study::known::{Case, KnownAnswers, count, error, failed, largest, told};
-use featherbench_study::{Entry, Made, Setup};
 
 /// The study's name in rows.
 const STUDY: &str = "uncertainty";
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "uncertainty", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>(STUDY)?.map(|_| Box::new(KnownAnswers::new(STUDY, cases())) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "uncertainty",
+    make: |setup| setup.made(STUDY, |_: NoSettings| KnownAnswers::new(STUDY, cases())),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 /// Every case.
 fn cases() -> Vec<Case> {

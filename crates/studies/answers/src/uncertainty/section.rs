@@ -3,11 +3,13 @@
 mod drawings;
 
 use super::STUDY;
+use super::falls::Bin;
 use super::rates::SIZES;
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
-use featherbench_study::known::{beside, passed, table};
+use featherbench_study::known::{beside, defined_by, passed, table};
+use featherbench_study::rows_of;
 use maud::{Markup, html};
 
 /// A kind of points: its name, its slope, and (samples, error of the mean).
@@ -40,9 +42,7 @@ const QUANTITIES: [(&str, &str); 11] = [
 
 /// Makes the section, if the run has rows of the study.
 pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
-    let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
-    let Some(first) = rows.first() else { return Vec::new() };
-    let chunk = overview.chunk_of(first);
+    let Some((rows, chunk)) = rows_of(rows, STUDY, overview) else { return Vec::new() };
     let figures = Figures { rates: rates(&rows), density: density(&rows), arm: arm(&rows) };
     vec![Section::new("uncertainty", "Uncertainty", body(&rows, &figures, &chunk))]
 }
@@ -64,8 +64,8 @@ fn rates<'a>(rows: &[&'a Row]) -> Vec<Rate<'a>> {
 
 fn density(rows: &[&Row]) -> Vec<[f64; 3]> {
     let of = |row: &&Row| {
-        let params: serde_json::Value = serde_json::from_str(&row.params).ok()?;
-        Some([params["case"]["velocity"].as_f64()?, row.value?, beside(rows, row, "known_density")?])
+        let bin: Bin = defined_by(row)?;
+        Some([bin.velocity, row.value?, beside(rows, row, "known_density")?])
     };
     rows.iter().filter(|row| row.quantity == "drop_density" && row.metric == "density").filter_map(of).collect()
 }

@@ -14,11 +14,13 @@ pub(crate) mod words;
 
 use featherbench_bench::measure::{ForwardScale, scaled_error};
 use featherbench_bench::truth::{Truth, TruthModel, conditioning_bound};
-use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Asked, Cell, Context, DENSE_LIMIT, Finished, NoSettings, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::TreeSparse;
 use featherbench_results::{Row, Verdict};
-use featherbench_study::{Entry, Made, Setup, row};
-use serde_json::json;
+use featherbench_study::{Entry, row, unanswered};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// The accuracy study, and the study `sweep`, which asks the same of drawn robots at one state each.
 pub struct Accuracy {
@@ -41,12 +43,12 @@ impl Accuracy {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "accuracy", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>("accuracy")?.map(|_| Box::new(Accuracy::STATES) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "accuracy",
+    make: |setup| setup.made("accuracy", |_: NoSettings| Accuracy::STATES),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 /// The quantities that are compared with the truth.
 const QUANTITIES: [Quantity; 5] = [
@@ -56,6 +58,16 @@ const QUANTITIES: [Quantity; 5] = [
     Quantity::ForwardDynamics,
     Quantity::ForwardDynamicsSingle,
 ];
+/// The parameters of a cell and its rows: at which levels the robot was drawn, if it was.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default)]
+pub(crate) struct Params {
+    base: String,
+    states: usize,
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub(crate) axes: BTreeMap<String, Value>,
+}
+
 /// The name of the reference in rows.
 const TRUTH: &str = "truth";
 /// The conditioning bound hardly depends on the state. Its median over a few is enough, and each costs O(n²).
@@ -76,10 +88,7 @@ impl Study for Accuracy {
         let mut cells = Vec::new();
         for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
             let big = robot.states.nv > DENSE_LIMIT;
-            let mut params = json!({"base": robot.base(), "states": robot.states.count()});
-            if !robot.axes.is_empty() {
-                params["axes"] = json!(robot.axes);
-            }
+            let params = Params { base: robot.base().into(), states: robot.states.count(), axes: robot.axes.clone() };
             for engine in context.engines {
                 let identity = engine.identity();
                 for quantity in QUANTITIES {
@@ -89,7 +98,7 @@ impl Study for Accuracy {
                     }
                     cells.extend(engine.methods(quantity).into_iter().map(|method| Cell {
                         scalar: quantity.precision().into(),
-                        ..Cell::new(self.name(), robot, identity, quantity.name(), method, params.clone())
+                        ..Cell::new(self.name(), robot, identity, quantity.name(), method, &params)
                     }));
                 }
             }
@@ -97,8 +106,8 @@ impl Study for Accuracy {
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        featherbench_study::evaluate(context, cell)
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        featherbench_study::evaluate(asked)
     }
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
@@ -117,14 +126,12 @@ impl Study for Accuracy {
         let (mut rows, mut medians) = (Vec::new(), Vec::new());
         for (cell, outcome) in finished {
             let blank = Row { reference: TRUTH.into(), unit: "1".into(), states: "all".into(), ..row(cell, robot) };
-            let (Outcome::Values(values), Some(quantity)) = (outcome, Quantity::parse(&cell.quantity)) else {
-                let (verdict, reason) = match outcome {
-                    Outcome::NoAnswer(NoAnswer::NotOffered(reason)) => (Verdict::Skip, reason.clone()),
-                    Outcome::NoAnswer(NoAnswer::Failed(reason)) => (Verdict::Error, reason.clone()),
-                    Outcome::Values(_) | Outcome::Text(_) => (Verdict::Error, format!("there is no quantity {}", cell.quantity)),
-                };
-                rows.push(context.gates.explain(blank.without_value(verdict, reason)));
-                continue;
+            let (values, quantity) = match outcome.answer().and_then(|values| Ok((values, Asked::of(context, cell).quantity()?))) {
+                Ok(answered) => answered,
+                Err(no_answer) => {
+                    rows.push(context.gates.explain(unanswered(blank, &no_answer, Verdict::Skip)));
+                    continue;
+                }
             };
             if matches!(quantity, Quantity::ForwardDynamics | Quantity::ForwardDynamicsSingle) {
                 let answers = values.chunks_exact(robot.states.nv).zip(&truth).zip(&forward);

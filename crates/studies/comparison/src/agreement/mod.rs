@@ -8,14 +8,14 @@ pub(crate) mod section;
 pub(crate) mod words;
 
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
-use featherbench_bench::{Cell, Context, DENSE_LIMIT, Engine, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Asked, Cell, Context, DENSE_LIMIT, Engine, Finished, NoSettings, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::Rnea;
 use featherbench_model::Model;
 use featherbench_results::{Row, Verdict};
 use featherbench_robots::Case;
-use featherbench_study::{Entry, Made, Setup, row};
+use featherbench_study::{Entry, row, unanswered};
 use over_best::over_best;
-use serde_json::json;
+use serde::{Deserialize, Serialize};
 
 /// The engine that all others are compared with.
 const REFERENCE: &str = OWN;
@@ -43,12 +43,12 @@ pub(crate) const QUANTITIES: [Quantity; 15] = [
 pub struct Agreement;
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "agreement", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>("agreement")?.map(|_| Box::new(Agreement) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "agreement",
+    make: |setup| setup.made("agreement", |_: NoSettings| Agreement),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 impl Study for Agreement {
     fn name(&self) -> &'static str {
@@ -72,8 +72,8 @@ impl Study for Agreement {
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        featherbench_study::evaluate(context, cell)
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        featherbench_study::evaluate(asked)
     }
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
@@ -101,8 +101,18 @@ pub(crate) fn asked(robot: &Robot, quantity: Quantity) -> bool {
     }
 }
 
+/// The parameters of a cell and its rows.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default)]
+struct Params {
+    base: String,
+    joints: Vec<String>,
+    states: usize,
+}
+
 fn cell(robot: &Robot, engine: &dyn Engine, quantity: Quantity, method: String) -> Cell {
-    let params = json!({"base": robot.base(), "joints": robot.joint_kinds(), "states": robot.asked(quantity)});
+    let joints = robot.joint_kinds().into_iter().map(str::to_owned).collect();
+    let params = Params { base: robot.base().into(), joints, states: robot.asked(quantity) };
     Cell::new("agreement", robot, engine.identity(), quantity.name(), method, params)
 }
 
@@ -140,9 +150,8 @@ impl Comparison<'_> {
             Outcome::Values(values) => values,
             Outcome::Text(_) => return Vec::new(),
             Outcome::NoAnswer(no_answer) => {
-                let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
                 let row = Row { reference: REFERENCE.into(), ..row(cell, self.robot) };
-                return vec![self.context.gates.explain(row.without_value(verdict, no_answer.to_string()))];
+                return vec![self.context.gates.explain(unanswered(row, no_answer, Verdict::Skip))];
             }
         };
         if quantity == Quantity::ForwardDynamics {

@@ -11,10 +11,10 @@ pub(crate) mod section;
 pub(crate) mod words;
 
 use featherbench_bench::truth::conditioning_bound;
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::mass_matrix;
 use featherbench_results::{Row, Verdict};
-use featherbench_study::{Entry, Made, Setup, row};
+use featherbench_study::{Entry, row};
 use nalgebra::DMatrix;
 use serde_json::json;
 
@@ -22,12 +22,12 @@ use serde_json::json;
 pub struct Conditioning;
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "conditioning", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>("conditioning")?.map(|_| Box::new(Conditioning) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "conditioning",
+    make: |setup| setup.made("conditioning", |_: NoSettings| Conditioning),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 /// Eigenvalues of larger matrices take minutes.
 const MOST_DOFS: usize = 600;
@@ -55,16 +55,14 @@ impl Study for Conditioning {
         robots.map(cell).collect()
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        let robot = context.robot(&cell.robot).ok_or_else(|| NoAnswer::Failed("there is no robot of this cell".into()));
-        robot
-            .and_then(|robot| {
-                if cell.method == floating_base::METHOD {
-                    return floating_base::numbers(robot).map_err(NoAnswer::Failed);
-                }
-                conditions(robot).ok_or_else(|| NoAnswer::Failed("M is singular at the straight configuration".into()))
-            })
-            .into()
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        let numbers = |robot: &Robot| {
+            if asked.cell.method == floating_base::METHOD {
+                return floating_base::numbers(robot).map_err(NoAnswer::Failed);
+            }
+            conditions(robot).ok_or_else(|| NoAnswer::Failed("M is singular at the straight configuration".into()))
+        };
+        asked.robot().and_then(numbers).into()
     }
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {

@@ -16,10 +16,10 @@ pub(crate) mod words;
 use featherbench_bench::measure::{ForwardScale, ratio, scaled_error, worst};
 use featherbench_bench::statistics::quantile;
 use featherbench_bench::truth::TrueDerivatives;
-use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, NoAnswer, OWN, Outcome, Quantity, Robot, Study, derivative_floor};
+use featherbench_bench::{Asked, Cell, Context, DENSE_LIMIT, Finished, NoAnswer, OWN, Outcome, Quantity, Robot, Study, derivative_floor};
 use featherbench_results::{Row, Verdict, canonical_json};
 use featherbench_robots::Case;
-use featherbench_study::{Entry, Made, Setup, row};
+use featherbench_study::{Entry, row, unanswered};
 use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::json;
@@ -56,12 +56,12 @@ impl Default for Derivatives {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "derivatives", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<Derivatives>(STUDY)?.map(|study| Box::new(study) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "derivatives",
+    make: |setup| setup.made(STUDY, |study: Derivatives| study),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 impl Study for Derivatives {
     fn name(&self) -> &'static str {
@@ -91,11 +91,12 @@ impl Study for Derivatives {
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        let cell = asked.cell;
         if cell.method == NONE {
             return Outcome::NoAnswer(NoAnswer::NotOffered(format!("{} has no {}", cell.engine, cell.quantity)));
         }
-        featherbench_study::evaluate(context, cell)
+        featherbench_study::evaluate(asked)
     }
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
@@ -111,20 +112,14 @@ impl Study for Derivatives {
             let growth = if is_forward(quantity) { &conditions } else { &still };
             for (cell, outcome) in asked() {
                 let blank = Row { reference: TRUTH.into(), unit: "1".into(), states: "all".into(), floor, ..row(cell, robot) };
-                let answer = match (&truth, outcome) {
-                    (_, Outcome::NoAnswer(NoAnswer::NotOffered(reason))) => Err((Verdict::Skip, reason.clone())),
-                    (_, Outcome::NoAnswer(NoAnswer::Failed(reason))) => Err((Verdict::Error, reason.clone())),
-                    (Some(truth), Outcome::Values(values)) => Ok((truth, values)),
-                    (None, _) => Err((Verdict::Error, "M is singular: there is no true answer".into())),
-                    (_, Outcome::Text(_)) => Err((Verdict::Error, "the answer is no numbers".into())),
-                };
-                match answer {
+                let singular = || NoAnswer::Failed("M is singular: there is no true answer".into());
+                match outcome.answer().and_then(|values| Ok((truth.as_ref().ok_or_else(singular)?, values))) {
                     Ok((truth, values)) => {
                         let states = values.chunks_exact(quantity.size(robot)).zip(truth).zip(&at);
                         let errors: Vec<f64> = states.map(|((value, truth), at)| scaled_error(robot, quantity, at, truth, value)).collect();
                         rows.extend(of_answer(context, robot, &blank, &errors, growth, &floors));
                     }
-                    Err((verdict, reason)) => rows.push(context.gates.explain(blank.without_value(verdict, reason))),
+                    Err(no_answer) => rows.push(context.gates.explain(unanswered(blank, &no_answer, Verdict::Skip))),
                 }
             }
         }

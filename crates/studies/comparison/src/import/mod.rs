@@ -32,10 +32,10 @@ pub use replay::Effect;
 pub use subtree::{SubTree, bound};
 
 use featherbench_bench::{
-    Cell, Context, Engine, FileFormat, Finished, Import as Read, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study,
+    Asked, Cell, Context, FileFormat, Finished, Import as Read, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study,
 };
 use featherbench_results::Row;
-use featherbench_study::{Entry, Made, Setup};
+use featherbench_study::{Entry, Made, Setup, answer};
 use serde_json::{Value, json};
 
 /// The import study.
@@ -85,16 +85,8 @@ impl Study for Import {
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        let lost = |what: &str| Outcome::NoAnswer(NoAnswer::Failed(format!("there is no {what} of this cell")));
-        let Some(robot) = context.robot(&cell.robot) else { return lost("robot") };
-        let Some(engine) = context.engine(&cell.engine) else { return lost("engine") };
-        let Some(file) = &robot.file else { return lost("file") };
-        match (engine.read(file), Quantity::parse(&cell.quantity)) {
-            (Err(no_answer), _) => Outcome::NoAnswer(no_answer),
-            (Ok(reading), None) => reading.to_text().map_or_else(|reason| Outcome::NoAnswer(NoAnswer::Failed(reason)), Outcome::Text),
-            (Ok(reading), Some(quantity)) => computed(robot, &reading, engine, quantity, &cell.method).into(),
-        }
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        imported(asked).unwrap_or_else(Outcome::NoAnswer)
     }
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
@@ -122,11 +114,13 @@ fn as_read(robot: &Robot, reading: &Read) -> Result<Robot, NoAnswer> {
     robot.as_read(reading, states).map_err(|error| NoAnswer::Failed(error.to_string()))
 }
 
-fn computed(robot: &Robot, reading: &Read, engine: &dyn Engine, quantity: Quantity, method: &str) -> Result<Vec<f64>, NoAnswer> {
-    let robot = as_read(robot, reading)?;
-    let count = robot.states.count();
-    let mut prepared = engine.prepare(&robot, quantity, method, &robot.states)?;
-    prepared.run(0..count)?;
-    let (values, due) = (prepared.read().to_vec(), count * quantity.size(&robot));
-    if values.len() == due { Ok(values) } else { Err(NoAnswer::Failed(format!("{} numbers came, {due} are due", values.len()))) }
+/// The engine's import as a text, or what it computes with it.
+fn imported(asked: &Asked) -> Result<Outcome, NoAnswer> {
+    let (robot, engine) = (asked.robot()?, asked.engine()?);
+    let file = robot.file.as_ref().ok_or_else(|| NoAnswer::Failed("there is no file of this cell".into()))?;
+    let reading = engine.read(file)?;
+    match asked.quantity() {
+        Err(_) => reading.to_text().map(Outcome::Text).map_err(NoAnswer::Failed),
+        Ok(quantity) => answer(engine, &as_read(robot, &reading)?, quantity, &asked.cell.method).map(Outcome::Values),
+    }
 }

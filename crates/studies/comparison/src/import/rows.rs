@@ -6,7 +6,7 @@ use super::{Class, Comparison, Effect, Finding, LARGEST, READING, Weight, armatu
 use featherbench_bench::measure::worst;
 use featherbench_bench::{Cell, Context, FileFormat, Finished, Import, ImportNote, NoAnswer, OWN, Outcome, Quantity, Robot};
 use featherbench_results::{Row, Verdict, canonical_json};
-use featherbench_study::row;
+use featherbench_study::{row, unanswered};
 use serde_json::{Value, json};
 
 /// The rows of a robot, engine by engine.
@@ -77,8 +77,7 @@ impl OfEngine<'_> {
     }
 
     fn refused(&self, cell: &Cell, no_answer: &NoAnswer) -> Row {
-        let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
-        self.context.gates.explain(self.row(cell, "differences").without_value(verdict, no_answer.to_string()))
+        self.context.gates.explain(unanswered(self.row(cell, "differences"), no_answer, Verdict::Skip))
     }
 
     fn read(&self, reading: &Import) -> Vec<Row> {

@@ -9,10 +9,10 @@
 pub(crate) mod words;
 
 use crate::agreement::{self, QUANTITIES};
-use featherbench_bench::{Cell, Context, Engine, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study, hash};
+use featherbench_bench::{Asked, Cell, Context, Engine, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study, hash};
 use featherbench_results::{EngineSource, Relation, Row, Verdict};
 use featherbench_robots::Random;
-use featherbench_study::{Entry, Made, Setup, asked, no_section, row};
+use featherbench_study::{Entry, Made, Setup, answer, case_row, no_section, row};
 use serde_json::json;
 
 /// The repeatability study.
@@ -93,6 +93,38 @@ impl Repeatability {
         }
         order
     }
+
+    /// Asks the first candidate that is answered twice.
+    fn twice(&self, asked: &Asked) -> Result<Twice, NoAnswer> {
+        let (engine, quantity) = (asked.engine()?, asked.quantity()?);
+        let candidates = candidates(asked.context, engine, quantity);
+        let order = self.order(asked.context, asked.cell, candidates.len());
+        let ask = |index: usize| answer(engine, candidates[index].0, quantity, &candidates[index].1);
+        let mut failures = 0;
+        for (place, &index) in order.iter().enumerate() {
+            match ask(index) {
+                Ok(first) => {
+                    // Otherwise a stored answer would count as a second one. The outcome of this question does not matter.
+                    let other = order[place + 1..].iter().find(|&&other| candidates[other].0.hash != candidates[index].0.hash);
+                    let _ = other.map(|&other| ask(other));
+                    let (robot, method) = &candidates[index];
+                    let again = ask(index).map_err(|no_answer| {
+                        let what = format!("{} of {} by {method}", asked.cell.quantity, robot.name);
+                        NoAnswer::Failed(format!("{what} was answered, and then not: {no_answer}"))
+                    });
+                    return again.map(|second| Twice::new(index, &first, &second));
+                }
+                Err(NoAnswer::NotOffered(_)) => {}
+                Err(NoAnswer::Failed(_)) => {
+                    failures += 1;
+                    if failures == PATIENCE {
+                        break;
+                    }
+                }
+            }
+        }
+        Err(NoAnswer::NotOffered("there is no robot about which it answers".into()))
+    }
 }
 
 impl Study for Repeatability {
@@ -116,52 +148,16 @@ impl Study for Repeatability {
                     continue;
                 }
                 let parts: Vec<&[u8]> = candidates.iter().flat_map(|(robot, method)| [robot.hash.as_bytes(), method.as_bytes()]).collect();
-                cells.push(Cell {
-                    study: self.name().into(),
-                    robot: "all".into(),
-                    robot_hash: hash::of_parts(&parts),
-                    params: json!({"draw": self.key, "quantity": quantity.name()}),
-                    engine: identity.name.clone(),
-                    version: identity.version.clone(),
-                    method: "drawn".into(),
-                    quantity: quantity.name().into(),
-                    scalar: "f64".into(),
-                });
+                let params = json!({"draw": self.key, "quantity": quantity.name()});
+                let cell = Cell::of_case(self.name(), "all", (&identity.name, &identity.version), quantity.name(), "drawn", params);
+                cells.push(Cell { robot_hash: hash::of_parts(&parts), ..cell });
             }
         }
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        let (Some(engine), Some(quantity)) = (context.engine(&cell.engine), Quantity::parse(&cell.quantity)) else {
-            return Outcome::NoAnswer(NoAnswer::Failed("there is no engine or quantity of this cell".into()));
-        };
-        let candidates = candidates(context, engine, quantity);
-        let order = self.order(context, cell, candidates.len());
-        let ask = |index: usize| asked(engine, candidates[index].0, quantity, &candidates[index].1);
-        let mut failures = 0;
-        for (place, &index) in order.iter().enumerate() {
-            match ask(index) {
-                Ok(first) => {
-                    // Otherwise a stored answer would count as a second one. The outcome of this question does not matter.
-                    let other = order[place + 1..].iter().find(|&&other| candidates[other].0.hash != candidates[index].0.hash);
-                    let _ = other.map(|&other| ask(other));
-                    let (robot, method) = &candidates[index];
-                    let again = ask(index).map_err(|no_answer| {
-                        NoAnswer::Failed(format!("{} of {} by {method} was answered, and then not: {no_answer}", cell.quantity, robot.name))
-                    });
-                    return again.map(|second| Twice::new(index, &first, &second).to_values()).into();
-                }
-                Err(NoAnswer::NotOffered(_)) => {}
-                Err(NoAnswer::Failed(_)) => {
-                    failures += 1;
-                    if failures == PATIENCE {
-                        break;
-                    }
-                }
-            }
-        }
-        Outcome::NoAnswer(NoAnswer::NotOffered("there is no robot about which it answers".into()))
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        self.twice(asked).map(|twice| twice.to_values()).into()
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
@@ -173,19 +169,13 @@ impl Repeatability {
     /// The row of a cell; `None` if the engine answers about no robot, which the rows of the agreement study say.
     fn judged(&self, context: &Context, cell: &Cell, outcome: &Outcome) -> Option<Row> {
         let blank = Row {
-            cell: cell.id(),
-            study: self.name().into(),
-            family: "all".into(),
-            params: featherbench_results::canonical_json(&cell.params),
-            engine: cell.engine.clone(),
-            engine_version: cell.version.clone(),
-            precision: cell.scalar.clone(),
             quantity: self.name().into(),
+            method: String::new(),
             states: "all".into(),
             metric: "repeated".into(),
             unit: "ulp".into(),
             reference: "the same question before".into(),
-            ..Row::default()
+            ..case_row(cell)
         };
         let lost = |reason: &str| Some(blank.clone().without_value(Verdict::Error, reason));
         let values = match outcome {

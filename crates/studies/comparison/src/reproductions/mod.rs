@@ -7,14 +7,11 @@
 pub(crate) mod section;
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, Outcome, Reproduction, SEEDS, SLACK, Study};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoSettings, Outcome, Reproduction, SEEDS, SLACK, Study, hash};
 use featherbench_results::{Relation, Row, Verdict};
-use featherbench_study::{Entry, Made, Setup};
-use serde_json::json;
+use featherbench_study::{Entry, Reproduce, case_row};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-
-/// Evaluates the reproduction of a name at the seeds from zero up to a number.
-pub type Reproduce = Arc<dyn Fn(&str, u64) -> Result<Vec<f64>, NoAnswer> + Send + Sync>;
 
 /// The study of known deviations.
 pub struct Reproductions {
@@ -23,13 +20,12 @@ pub struct Reproductions {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "reproductions", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    let settings = setup.suite.settings::<NoSettings>("reproductions")?;
-    Ok(settings.map(|_| Box::new(Reproductions { reproduce: Arc::clone(&setup.reproduce) }) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "reproductions",
+    make: |setup| setup.made("reproductions", |_: NoSettings| Reproductions { reproduce: Arc::clone(&setup.reproduce) }),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 impl Study for Reproductions {
     fn name(&self) -> &'static str {
@@ -37,28 +33,18 @@ impl Study for Reproductions {
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
-        let cell = |known: &Reproduction| Cell {
-            study: self.name().into(),
-            robot: known.name.clone(),
-            robot_hash: featherbench_bench::hash::of(known.name.as_bytes()),
-            params: json!({
-                "condition": known.condition,
-                "measure": known.measure,
-                "range": known.range,
-                "seeds": SEEDS,
-                "upstream": known.upstream,
-            }),
-            engine: known.engine.clone(),
-            version: known.version.clone(),
-            method: known.name.clone(),
-            quantity: "deviation".into(),
-            scalar: "f64".into(),
+        let cell = |known: &Reproduction| {
+            let Reproduction { name, engine, version, condition, measure, range, upstream, .. } = known;
+            let [condition, measure, upstream] = [condition, measure, upstream].map(String::clone);
+            let params = Params { condition, measure, range: *range, seeds: SEEDS, upstream };
+            let cell = Cell::of_case(self.name(), name, (engine, version), "deviation", name, params);
+            Cell { robot_hash: hash::of(name.as_bytes()), ..cell }
         };
         context.gates.reproductions().iter().map(cell).collect()
     }
 
-    fn evaluate(&self, _: &Context, cell: &Cell) -> Outcome {
-        (self.reproduce)(&cell.robot, SEEDS).into()
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        (self.reproduce)(&asked.cell.robot, SEEDS).into()
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
@@ -71,21 +57,18 @@ impl Study for Reproductions {
     }
 }
 
+/// The parameters of a cell and its rows.
+#[derive(Default, Serialize, Deserialize)]
+struct Params {
+    condition: String,
+    measure: String,
+    range: [f64; 2],
+    seeds: u64,
+    upstream: String,
+}
+
 fn rows(context: &Context, known: &Reproduction, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
-    let blank = Row {
-        cell: cell.id(),
-        study: cell.study.clone(),
-        family: cell.robot.clone(),
-        params: featherbench_results::canonical_json(&cell.params),
-        engine: cell.engine.clone(),
-        engine_version: cell.version.clone(),
-        method: cell.method.clone(),
-        precision: cell.scalar.clone(),
-        quantity: cell.quantity.clone(),
-        states: "seeds".into(),
-        unit: "1".into(),
-        ..Row::default()
-    };
+    let blank = Row { states: "seeds".into(), unit: "1".into(), ..case_row(cell) };
     let installed = context.engine(&known.engine).map(|engine| engine.identity().version.clone());
     if installed.as_ref().is_some_and(|installed| *installed != known.version) {
         let reason = format!("the range is that of {} {}, here is {}", known.engine, known.version, installed.unwrap_or_default());

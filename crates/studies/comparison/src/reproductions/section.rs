@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use super::Params;
+use featherbench_bench::params;
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, UNPASSED, labels, opener};
 use featherbench_results::{Row, RunInfo, Verdict};
 use maud::{Markup, html};
-use serde_json::Value;
 
 /// The study's name in rows.
 const STUDY: &str = "reproductions";
@@ -16,7 +17,7 @@ struct Known<'a> {
     smallest: Option<&'a Row>,
     largest: Option<&'a Row>,
     gravest: &'a Row,
-    params: Value,
+    params: Params,
 }
 
 /// Makes the section, if the run has reproductions.
@@ -54,7 +55,7 @@ fn body(known: &[Known]) -> Markup {
 fn known(rows: &[Row]) -> Vec<Known<'_>> {
     let mut found: BTreeMap<(&str, &str), Known> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.study == STUDY) {
-        let params = || serde_json::from_str(&row.params).unwrap_or_default();
+        let params = || params::of_row(row).unwrap_or_default();
         let known = found.entry((&row.engine, &row.method)).or_insert_with(|| Known {
             smallest: None,
             largest: None,
@@ -75,21 +76,20 @@ fn known(rows: &[Row]) -> Vec<Known<'_>> {
 
 fn row(known: &Known) -> Markup {
     let row = known.gravest;
-    let word = |key: &str| known.params[key].as_str().unwrap_or_default().to_owned();
+    let Params { condition, measure, range: [low, high], upstream, .. } = &known.params;
     let value = |row: Option<&Row>| row.and_then(|row| row.value);
-    let upstream = word("upstream");
     html! {
         tr {
             th scope="row" { (row.engine) " " (row.engine_version) }
-            td { (word("condition")) }
-            td { (word("measure")) }
-            td.number { (range(known.params["range"][0].as_f64(), known.params["range"][1].as_f64())) }
+            td { (condition) }
+            td { (measure) }
+            td.number { (range(Some(*low), Some(*high))) }
             td.number { (range(value(known.smallest), value(known.largest))) }
             td {
                 span class={ "badge " (row.verdict) } { (labels::glyph(row.verdict)) " " (status(row)) }
                 @if row.verdict != Verdict::Pass { " " (opener(UNPASSED, &[("study", STUDY), ("method", &row.method)], "why")) }
             }
-            td { @if upstream.starts_with("https://") { a href=(upstream) { (thread(&upstream)) } } @else { (upstream) } }
+            td { @if upstream.starts_with("https://") { a href=(upstream) { (thread(upstream)) } } @else { (upstream) } }
             td { code { (row.method) } }
         }
     }

@@ -17,11 +17,12 @@ pub(crate) mod section;
 pub(crate) mod words;
 
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Stepper, Study};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Stepper, Study, params};
 use featherbench_dynamics::{energy, forward_dynamics};
 use featherbench_results::{Row, Verdict};
 use featherbench_robots::Case;
-use featherbench_study::{Entry, Made, Setup, row};
+use featherbench_study::{Entry, row, unanswered};
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::ops::RangeInclusive;
 
@@ -42,12 +43,8 @@ const CASES: [Case; 2] = [Case::Random, Case::Fast];
 pub struct Steps;
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "steps", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>("steps")?.map(|_| Box::new(Steps) as _))
-}
+pub const ENTRY: Entry =
+    Entry { name: "steps", make: |setup| setup.made("steps", |_: NoSettings| Steps), sections: section::sections, words: words::WORDS };
 
 impl Study for Steps {
     fn name(&self) -> &'static str {
@@ -74,14 +71,13 @@ impl Study for Steps {
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        let lost = || Outcome::NoAnswer(NoAnswer::Failed("there is no robot or stepping engine of this cell".into()));
-        let Some(robot) = context.robot(&cell.robot) else { return lost() };
-        let Some(stepper) = context.engine(&cell.engine).and_then(|engine| engine.stepper()) else { return lost() };
-        match Quantity::parse(&cell.quantity) {
-            Some(Quantity::ForwardDynamics) => accelerations(robot, stepper, &cell.method).into(),
-            _ => drifts(robot, stepper, &cell.method).into(),
-        }
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        let errors = || {
+            let (robot, stepper) = (asked.robot()?, asked.offered(|engine| engine.stepper())?);
+            let of = if asked.quantity()? == Quantity::ForwardDynamics { accelerations } else { drifts };
+            of(robot, stepper, &asked.cell.method)
+        };
+        errors().into()
     }
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
@@ -91,8 +87,7 @@ impl Study for Steps {
             let values = match outcome.answer() {
                 Ok(values) => values,
                 Err(no_answer) => {
-                    let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
-                    rows.push(context.gates.explain(blank.without_value(verdict, no_answer.to_string())));
+                    rows.push(context.gates.explain(unanswered(blank, &no_answer, Verdict::Skip)));
                     continue;
                 }
             };
@@ -108,13 +103,9 @@ impl Study for Steps {
                 let guard = stepper.and_then(|stepper| stepper.guard()).filter(|_| acceleration && plain && !exact);
                 let regime = |dt: f64, error: f64| Some(Regime::of(dt, error, speed(robot.states.v(state)), guard?));
                 for (&dt, &value) in steps.iter().zip(values) {
-                    let mut params = json!({"dt": dt});
                     let regime = regime(dt, value);
-                    if let Some(regime) = regime {
-                        params["regime"] = regime.name().into();
-                    }
-                    let mut row = Row { metric: metric.into(), params: featherbench_results::canonical_json(&params), ..blank.clone() }
-                        .informed(value);
+                    let mut row =
+                        Row { metric: metric.into(), params: params::text(&Step { dt, regime }), ..blank.clone() }.informed(value);
                     if regime == Some(Regime::Explicit) && row.value.is_some() {
                         row.reason = EXPLICIT.into();
                     }
@@ -137,8 +128,17 @@ impl Study for Steps {
 /// The reason in the row of an explicit step.
 const EXPLICIT: &str = "the engine's energy guard left out the implicit term: this step is explicit, and begins with the true acceleration";
 
+/// The parameters of the row of a step.
+#[derive(Serialize, Deserialize)]
+struct Step {
+    dt: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    regime: Option<Regime>,
+}
+
 /// The kind of a step by an engine that has a guard.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 enum Regime {
     /// With the term that makes it implicit: the error is of first order in its length.
     Implicit,
@@ -151,13 +151,6 @@ impl Regime {
     /// first order. (From the guard on, dt·|v| is 1e-3 and more, and so is the implicit term's share.)
     fn of(dt: f64, error: f64, speed: f64, guard: f64) -> Self {
         if dt * speed >= guard && error < *STRAIGHT.start() { Self::Explicit } else { Self::Implicit }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Implicit => "implicit",
-            Self::Explicit => "explicit",
-        }
     }
 }
 
@@ -241,7 +234,7 @@ mod tests {
             (Regime::Implicit, Regime::Explicit),
             "no explicit step has an order"
         );
-        assert_eq!([Regime::Implicit, Regime::Explicit].map(Regime::name), ["implicit", "explicit"]);
+        assert_eq!(serde_json::json!([Regime::Implicit, Regime::Explicit]), serde_json::json!(["implicit", "explicit"]));
         assert_eq!((speed(&[3.0, -4.0]), speed(&[])), (5.0, 0.0));
     }
 

@@ -4,6 +4,8 @@ mod drawings;
 
 use std::collections::BTreeMap;
 
+use super::Step;
+use featherbench_bench::params;
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, labels, opener, robot_chunk};
 use featherbench_results::{Row, RunInfo, Verdict};
@@ -54,7 +56,7 @@ fn lines<'a>(overview: &Overview<'a>, rows: &'a [Row]) -> Vec<StepLine<'a>> {
         match row.metric.as_str() {
             "order" => line.order = Some(value),
             "order_off_one" => line.verdict = Some(row.verdict),
-            _ => line.points.extend(step(&row.params).map(|dt| (dt, value))),
+            _ => line.points.extend(params::of_row(row).map(|step: Step| (step.dt, value))),
         }
     }
     let mut lines: Vec<StepLine> = found.into_values().collect();
@@ -62,11 +64,6 @@ fn lines<'a>(overview: &Overview<'a>, rows: &'a [Row]) -> Vec<StepLine<'a>> {
         line.points.sort_by(|a, b| b.0.total_cmp(&a.0));
     }
     lines
-}
-
-/// The step in a row's parameters.
-fn step(params: &str) -> Option<f64> {
-    serde_json::from_str::<serde_json::Value>(params).ok()?.get("dt")?.as_f64()
 }
 
 /// Makes the section, if the run has steps.
@@ -132,17 +129,5 @@ fn row(overview: &Overview, line: &StepLine) -> Markup {
                 @if let Some(order) = line.order { (format!("{order:.4}")) }
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::step;
-
-    #[test]
-    fn the_step_is_read_from_the_parameters() {
-        assert_eq!(step("{\"dt\":1e-6}"), Some(1e-6));
-        assert_eq!(step("{}"), None);
-        assert_eq!(step("nonsense"), None);
     }
 }

@@ -7,13 +7,13 @@
 pub(crate) mod section;
 
 use crate::Accuracy;
-use featherbench_bench::{NoSettings, Study};
-use featherbench_study::{Entry, Made, Setup};
+use featherbench_bench::NoSettings;
+use featherbench_study::Entry;
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "sweep", make: of_suite, sections: section::sections, words: crate::accuracy::words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>(Accuracy::SWEEP.name())?.map(|_| Box::new(Accuracy::SWEEP) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "sweep",
+    make: |setup| setup.made("sweep", |_: NoSettings| Accuracy::SWEEP),
+    sections: section::sections,
+    words: crate::accuracy::words::WORDS,
+};

@@ -2,13 +2,14 @@
 
 use super::{CAP, TARGET};
 use featherbench_answers::contact::standing::{FRICTION, Stand};
-use featherbench_bench::{Cell, ContactProblems, ContactSolver, ContactSteps, Context, Evaluation, NoAnswer, OWN};
+use featherbench_bench::{ContactProblems, ContactSolver, ContactSteps, Context, Evaluation, NoAnswer, OWN};
 use featherbench_contact::solver::Blocks;
-use featherbench_contact::{BlockGaussSeidel, Newton, Problem, Residuals, Solver};
+use featherbench_contact::{BlockGaussSeidel, Newton, Problem, Residuals, Solver, Unsupported};
 use featherbench_spatial::smaller;
 use featherbench_study::known::largest;
 use nalgebra::DVector;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::ops::Range;
 
 /// Our methods, the reference first.
@@ -108,7 +109,7 @@ impl Told {
 }
 
 /// A method of an engine.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Candidate {
     pub engine: String,
     pub version: String,
@@ -131,27 +132,6 @@ impl Candidate {
         laws.chain(own.map(|method| Self { own_model: method.settings, ..Self::new(engine, &method.name, false) })).collect()
     }
 
-    /// As a parameter of the cell.
-    pub fn to_params(&self, context: &Context) -> Value {
-        let version = context.engine(&self.engine).map(|engine| engine.identity().version.clone()).unwrap_or_default();
-        json!({"engine": self.engine, "version": version, "method": self.method, "control": self.control, "own_model": self.own_model})
-    }
-
-    /// The candidates of a cell, in the order of its samples.
-    pub fn of(cell: &Cell) -> Vec<Self> {
-        let text = |candidate: &Value, key: &str| candidate[key].as_str().unwrap_or_default().to_owned();
-        let listed = cell.params["candidates"].as_array().into_iter().flatten();
-        listed
-            .map(|candidate| Self {
-                engine: text(candidate, "engine"),
-                version: text(candidate, "version"),
-                method: text(candidate, "method"),
-                control: candidate["control"] == true,
-                own_model: candidate["own_model"].clone(),
-            })
-            .collect()
-    }
-
     /// Makes it ready at a tolerance.
     pub fn prepare<'a>(&self, context: &'a Context<'_>, landed: &'a Landed, tolerance: f64) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
         if self.engine != OWN {
@@ -163,15 +143,24 @@ impl Candidate {
             };
         }
         let problems = &landed.problems;
-        let sweeps = BlockGaussSeidel { tolerance, sweeps: CAP };
-        let unsupported = |error: featherbench_contact::Unsupported| NoAnswer::NotOffered(error.to_string());
+        let (count, sweeps) = (problems.len(), BlockGaussSeidel { tolerance, sweeps: CAP });
         match self.method.as_str() {
             "block_gauss_seidel" => {
-                let blocks = problems.iter().map(Blocks::new).collect::<Result<_, _>>().map_err(unsupported)?;
-                Ok(Box::new(Sweeps { blocks, settings: sweeps }))
+                let mut blocks = problems.iter().map(Blocks::new).collect::<Result<Vec<_>, _>>().map_err(unsupported)?;
+                Ok(each(count, move |k| {
+                    blocks[k].clear();
+                    std::hint::black_box(blocks[k].run(&sweeps));
+                    Ok(())
+                }))
             }
-            WHOLE => Ok(Box::new(Whole { problems, settings: sweeps })),
-            "newton" => Ok(Box::new(Solved { problems, solver: Newton { tolerance, ..Newton::default() } })),
+            WHOLE => Ok(each(count, move |k| {
+                std::hint::black_box(Blocks::new(&problems[k])?.run(&sweeps));
+                Ok(())
+            })),
+            "newton" => {
+                let solver = Newton { tolerance, ..Newton::default() };
+                Ok(each(count, move |k| solver.solve(&problems[k]).map(|solution| drop(std::hint::black_box(solution)))))
+            }
             other => Err(NoAnswer::NotOffered(format!("we have no method {other}"))),
         }
     }
@@ -206,7 +195,7 @@ impl Candidate {
             let newton = Newton { tolerance, ..Newton::default() };
             let solver: &dyn Solver = if self.method == "newton" { &newton } else { &sweeps };
             let solved = landed.problems.iter().map(|problem| {
-                let solution = solver.solve(problem).map_err(|error| NoAnswer::NotOffered(error.to_string()))?;
+                let solution = solver.solve(problem).map_err(unsupported)?;
                 Ok(solution.point().map_or_else(|| DVector::from_element(rows, f64::NAN), |point| point.impulses.clone()))
             });
             return solved.collect();
@@ -223,26 +212,27 @@ impl Candidate {
     }
 }
 
-/// Sweeps over prepared problems.
-struct Sweeps {
-    blocks: Vec<Blocks>,
-    settings: BlockGaussSeidel,
+/// One of our methods on so many problems, one after another.
+fn each<'a>(count: usize, solve: impl FnMut(usize) -> Result<(), Unsupported> + Send + 'a) -> Box<dyn Evaluation + 'a> {
+    Box::new(Each { count, solve })
 }
 
-impl Evaluation for Sweeps {
+struct Each<F> {
+    count: usize,
+    solve: F,
+}
+
+impl<F: FnMut(usize) -> Result<(), Unsupported> + Send> Evaluation for Each<F> {
     fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer> {
-        let count = self.blocks.len();
         for k in range {
-            let blocks = &mut self.blocks[k % count];
-            blocks.clear();
-            std::hint::black_box(blocks.run(&self.settings));
+            (self.solve)(k % self.count).map_err(unsupported)?;
         }
         Ok(())
     }
 
     /// Problems differ: a block has all of them.
     fn together(&self) -> usize {
-        self.blocks.len()
+        self.count
     }
 
     fn read(&self) -> &[f64] {
@@ -250,51 +240,6 @@ impl Evaluation for Sweeps {
     }
 }
 
-/// Preparation and sweeps.
-struct Whole<'a> {
-    problems: &'a [Problem],
-    settings: BlockGaussSeidel,
-}
-
-impl Evaluation for Whole<'_> {
-    fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer> {
-        for k in range {
-            let made = Blocks::new(&self.problems[k % self.problems.len()]);
-            let mut blocks = made.map_err(|error| NoAnswer::NotOffered(error.to_string()))?;
-            std::hint::black_box(blocks.run(&self.settings));
-        }
-        Ok(())
-    }
-
-    fn together(&self) -> usize {
-        self.problems.len()
-    }
-
-    fn read(&self) -> &[f64] {
-        &[]
-    }
-}
-
-/// Solutions by a solver of the library.
-struct Solved<'a> {
-    problems: &'a [Problem],
-    solver: Newton,
-}
-
-impl Evaluation for Solved<'_> {
-    fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer> {
-        for k in range {
-            let solution = self.solver.solve(&self.problems[k % self.problems.len()]);
-            std::hint::black_box(solution.map_err(|error| NoAnswer::NotOffered(error.to_string()))?);
-        }
-        Ok(())
-    }
-
-    fn together(&self) -> usize {
-        self.problems.len()
-    }
-
-    fn read(&self) -> &[f64] {
-        &[]
-    }
+fn unsupported(error: Unsupported) -> NoAnswer {
+    NoAnswer::NotOffered(error.to_string())
 }

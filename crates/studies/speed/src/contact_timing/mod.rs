@@ -25,12 +25,12 @@ use crate::timing::protocol::{Budget, Ready, experiment};
 use crate::timing::samples::Samples;
 use candidates::{Candidate, Landed, SOLVERS, Told};
 use featherbench_answers::contact::standing::Stand;
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, OWN, Outcome, Study, hash};
-use featherbench_results::{Row, canonical_json};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, OWN, Outcome, Study};
+use featherbench_results::Row;
 use featherbench_robots::Random;
-use featherbench_study::{Entry, Made, Setup};
-use serde::Deserialize;
-use serde_json::json;
+use featherbench_study::Entry;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::time::Instant;
 
 /// The study of solution times.
@@ -50,12 +50,12 @@ struct Settings {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "contact_timing", make: of_suite, sections: section::sections, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<Settings>("contact_timing")?.map(|settings| Box::new(ContactTiming { settings }) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "contact_timing",
+    make: |setup| setup.made("contact_timing", |settings| ContactTiming { settings }),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
 /// The study's name in rows.
 const STUDY: &str = "contact_timing";
@@ -78,32 +78,22 @@ impl ContactTiming {
         let control = Candidate::new(OWN, SOLVERS[0], true);
         let engines = self.settings.engines.iter().filter_map(|name| Some((name, context.engine(name)?.contact_solver()?)));
         let others = engines.flat_map(|(name, solver)| Candidate::all_of(name, solver));
-        own.chain([control]).chain(others).collect()
+        let version = |name: &str| context.engine(name).map(|engine| engine.identity().version.clone()).unwrap_or_default();
+        own.chain([control]).chain(others).map(|candidate| Candidate { version: version(&candidate.engine), ..candidate }).collect()
     }
 
     fn cell(&self, context: &Context, stand: Stand) -> Option<Cell> {
         let identity = context.engine(OWN)?.identity();
-        let candidates: Vec<_> = self.candidates(context, stand).iter().map(|candidate| candidate.to_params(context)).collect();
-        let params = json!({"contacts": stand.contacts(), "rank": stand.rank(), "seconds": self.settings.seconds, "seed": context.seed, "target": TARGET, "candidates": candidates});
-        Some(Cell {
-            study: STUDY.into(),
-            robot: stand.name(),
-            robot_hash: hash::of(canonical_json(&params).as_bytes()),
-            params,
-            engine: identity.name.clone(),
-            version: identity.version.clone(),
-            method: SOLVERS[0].into(),
-            quantity: QUANTITY.into(),
-            scalar: "f64".into(),
-        })
+        let of_robot = OfRobot { contacts: stand.contacts(), rank: stand.rank(), seconds: self.settings.seconds, own_model: None };
+        let params = Params { of_robot, seed: context.seed, target: TARGET, candidates: self.candidates(context, stand) };
+        Some(Cell::of_case(STUDY, &stand.name(), (&identity.name, &identity.version), QUANTITY, SOLVERS[0], params))
     }
 
-    /// How many problems, what is told of each candidate, then the samples.
-    fn measured(&self, context: &Context, cell: &Cell) -> Result<Vec<f64>, NoAnswer> {
+    fn measured(&self, &Asked { context, cell, .. }: &Asked) -> Result<Measured, NoAnswer> {
         let lost = || NoAnswer::Failed("there is no robot of this cell".into());
         let stand = Stand::ALL.into_iter().find(|stand| stand.name() == cell.robot).ok_or_else(lost)?;
         let landed = Landed::of(stand, context.seed)?;
-        let candidates = Candidate::of(cell);
+        let Params { candidates, .. } = cell.params()?;
         let chosen: Vec<_> = candidates.iter().map(|candidate| candidate.at_target(context, &landed)).collect();
         let _pinned = Pinned::to_one_core();
         let prepare = |which: usize| -> Ready { candidates[which].prepare(context, &landed, chosen[which].clone()?.tolerance) };
@@ -111,19 +101,47 @@ impl ContactTiming {
         let start = Instant::now();
         let clock = || start.elapsed();
         let samples = experiment(&prepare, candidates.len(), landed.problems.len(), Budget::of(self.settings.seconds), &clock, &mut random);
-        let told = chosen.into_iter().flat_map(|chosen| chosen.unwrap_or(Told::NONE).to_values());
-        Ok(std::iter::once(landed.problems.len() as f64).chain(told).chain(samples.to_values()).collect())
+        let told = chosen.into_iter().map(|chosen| chosen.unwrap_or(Told::NONE)).collect();
+        Ok(Measured { problems: landed.problems.len() as f64, told, samples })
     }
+}
+
+/// The parameters of a cell.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Params {
+    #[serde(flatten)]
+    of_robot: OfRobot,
+    seed: u64,
+    target: f64,
+    /// In the order of the samples.
+    candidates: Vec<Candidate>,
+}
+
+/// Those of them that its rows have, and the settings of a method that answers by the engine's own model of contact.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct OfRobot {
+    contacts: usize,
+    rank: usize,
+    seconds: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    own_model: Option<Value>,
 }
 
 /// The outcome of a cell.
 struct Measured {
+    /// How many problems there are.
     problems: f64,
+    /// What is told of each candidate.
     told: Vec<Told>,
     samples: Samples,
 }
 
 impl Measured {
+    fn to_values(&self) -> Vec<f64> {
+        let told = self.told.iter().flat_map(|told| told.to_values());
+        std::iter::once(self.problems).chain(told).chain(self.samples.to_values()).collect()
+    }
+
     fn from_values(values: &[f64], candidates: usize) -> Option<Self> {
         let (&problems, rest) = values.split_first()?;
         let (told, samples) = rest.split_at_checked(3 * candidates)?;
@@ -159,8 +177,8 @@ impl Study for ContactTiming {
         Stand::ALL.into_iter().filter_map(|stand| self.cell(context, stand)).collect()
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        self.measured(context, cell).into()
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        self.measured(asked).map(|measured| measured.to_values()).into()
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

@@ -1,37 +1,26 @@
 //! Rows of a robot's experiment.
 
 use super::candidates::{Candidate, Told, WHOLE};
-use super::{Measured, STUDY, TARGET};
+use super::{Measured, OfRobot, Params, TARGET};
 use crate::timing::rows::{estimated, judged};
 use featherbench_bench::statistics::{CONTROL_LEVEL, Estimate, LEVEL};
-use featherbench_bench::{Cell, Gates, Outcome};
-use featherbench_results::{Kind, Relation, Row, Verdict, canonical_json};
+use featherbench_bench::{Cell, Gates, NoAnswer, Outcome, params};
+use featherbench_results::{Kind, Relation, Row, Verdict};
 use featherbench_robots::Random;
-use serde_json::json;
+use featherbench_study::{case_row, unanswered};
 
 /// All rows of a cell.
 pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
-    let candidates = Candidate::of(cell);
-    let params = json!({"contacts": cell.params["contacts"], "rank": cell.params["rank"], "seconds": cell.params["seconds"]});
-    let blank = Row {
-        cell: cell.id(),
-        study: STUDY.into(),
-        family: cell.robot.clone(),
-        params: canonical_json(&params),
-        engine: cell.engine.clone(),
-        engine_version: cell.version.clone(),
-        method: cell.method.clone(),
-        precision: cell.scalar.clone(),
-        quantity: cell.quantity.clone(),
-        ..Row::default()
+    let parts = || -> Result<_, NoAnswer> {
+        let Params { of_robot, candidates, .. } = cell.params()?;
+        let measured = Measured::from_values(outcome.answer()?, candidates.len());
+        Ok((of_robot, candidates, measured.ok_or_else(|| NoAnswer::Failed("the outcome holds no samples".into()))?))
     };
-    let measured = match outcome.answer() {
-        Ok(values) => Measured::from_values(values, candidates.len()).ok_or_else(|| "the outcome holds no samples".to_owned()),
-        Err(no_answer) => Err(no_answer.to_string()),
-    };
-    let measured = match measured {
-        Ok(measured) => measured,
-        Err(reason) => return vec![blank.without_value(Verdict::Error, reason)],
+    let params = cell.params::<OfRobot>().map(|params| params::text(&params)).unwrap_or_default();
+    let blank = Row { params, ..case_row(cell) };
+    let (of_robot, candidates, measured) = match parts() {
+        Ok(parts) => parts,
+        Err(no_answer) => return vec![unanswered(blank, &no_answer, Verdict::Error)],
     };
     let random = |what: &str| Random::named(0, &format!("{} {what}", cell.id()));
     let samples = &measured.samples;
@@ -52,9 +41,7 @@ pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
         let mut blank = Row { engine, engine_version: version, method, ..blank.clone() };
         let own = !own_model.is_null();
         if own {
-            let mut params = params.clone();
-            params["own_model"] = own_model;
-            blank.params = canonical_json(&params);
+            blank.params = params::text(&OfRobot { own_model: Some(own_model), ..of_robot.clone() });
         }
         let of = |metric: &str, unit: &str, kind| Row { metric: metric.into(), unit: unit.into(), kind, ..blank.clone() };
         if candidate.control {

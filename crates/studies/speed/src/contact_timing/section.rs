@@ -1,7 +1,7 @@
 //! Section: how long solvers take for the contacts of standing robots.
 
-use super::{STUDY, TARGET};
-use featherbench_bench::OWN;
+use super::{OfRobot, STUDY, TARGET};
+use featherbench_bench::{OWN, params};
 use featherbench_report::figure::{Axis, Point};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, labels, opener};
@@ -43,10 +43,10 @@ fn times<'a>(rows: &[&'a Row]) -> Vec<Time<'a>> {
     };
     let of = |row: &&'a Row| {
         (row.metric == "ns_per_call").then_some(())?;
-        let params: serde_json::Value = serde_json::from_str(&row.params).ok()?;
+        let params: OfRobot = params::of_row(row)?;
         Some(Time {
             robot: &row.family,
-            contacts: params["contacts"].as_f64()?,
+            contacts: params.contacts as f64,
             engine: &row.engine,
             method: &row.method,
             ns: row.value?,

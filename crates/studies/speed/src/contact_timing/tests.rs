@@ -1,6 +1,7 @@
 use super::*;
 use featherbench_bench::Gates;
 use featherbench_results::Verdict;
+use serde_json::json;
 
 fn gates() -> Gates {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../ci/gates.toml");
@@ -8,19 +9,10 @@ fn gates() -> Gates {
 }
 
 fn cell(candidates: &[(&str, &str, bool)]) -> Cell {
-    let listed =
-        candidates.iter().map(|(engine, method, control)| json!({"engine": engine, "version": "1", "method": method, "control": control}));
-    Cell {
-        study: STUDY.into(),
-        robot: "quadruped, 4 contacts".into(),
-        robot_hash: String::new(),
-        params: json!({"contacts": 4, "rank": 12, "seconds": 1.0, "candidates": listed.collect::<Vec<_>>()}),
-        engine: "featherbench".into(),
-        version: "1".into(),
-        method: SOLVERS[0].into(),
-        quantity: QUANTITY.into(),
-        scalar: "f64".into(),
-    }
+    let of = |(engine, method, control): &(&str, &str, bool)| Candidate::new(engine, method, *control);
+    let of_robot = OfRobot { contacts: 4, rank: 12, seconds: 1.0, own_model: None };
+    let params = Params { of_robot, seed: 1, target: TARGET, candidates: candidates.iter().map(of).collect() };
+    Cell::of_case(STUDY, "quadruped, 4 contacts", ("featherbench", "1"), QUANTITY, SOLVERS[0], params)
 }
 
 const FOUR: [(&str, &str, bool); 4] = [

@@ -31,13 +31,12 @@ pub(crate) mod words;
 
 use crate::scaling::{relative_error, truth};
 use featherbench_bench::alone::{self, Ask, Measured, Question};
-use featherbench_bench::{Cell, Context, Engine, Finished, Limits, NoAnswer, OWN, Outcome, Quantity, Study};
+use featherbench_bench::{Asked, Cell, Context, Engine, Finished, Limits, NoAnswer, OWN, Outcome, Quantity, Study};
 use featherbench_results::Row;
-use featherbench_study::{Entry, Made, Setup, no_section};
+use featherbench_study::{Entry, no_section};
 use line::{Grown, Point, Stop};
 use own::Own;
-use serde::Deserialize;
-use serde_json::json;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -99,14 +98,36 @@ impl Line {
     }
 }
 
-/// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "growth", make: of_suite, sections: no_section, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    let settings = setup.suite.settings::<Settings>("growth")?;
-    Ok(settings.map(|settings| Box::new(Growth::new(settings, Arc::clone(&setup.measure))) as _))
+/// The parameters of a cell.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Params {
+    #[serde(flatten)]
+    of_line: OfLine,
+    of: String,
+    sizes: Vec<u64>,
+    must: u64,
+    seconds: f64,
+    patience: u64,
+    memory: u64,
+    seed: u64,
 }
+
+/// Those of them that its rows have.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct OfLine {
+    line: String,
+    /// Of our methods that use several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) threads: Option<usize>,
+}
+
+/// The study in the registry.
+pub const ENTRY: Entry = Entry {
+    name: "growth",
+    make: |setup| setup.made("growth", |settings| Growth::new(settings, Arc::clone(&setup.measure))),
+    sections: no_section,
+    words: words::WORDS,
+};
 
 impl Growth {
     /// The study with these settings; `measure` measures in a process of its own.
@@ -219,7 +240,7 @@ impl Growth {
     }
 
     /// What a cell's methods did along its line. Cells that were measured with it are kept until they are asked for.
-    fn line(&self, context: &Context, cell: &Cell) -> Result<Grown, NoAnswer> {
+    fn line(&self, &Asked { context, cell, .. }: &Asked) -> Result<Grown, NoAnswer> {
         let ahead = || self.ahead.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(grown) = ahead().remove(&cell.id()) {
             return Ok(grown);
@@ -260,41 +281,32 @@ impl Study for Growth {
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let asked = [OWN].into_iter().chain(self.settings.engines.iter().map(String::as_str));
         let engines: Vec<&dyn Engine> = asked.filter_map(|name| context.engine(name)).collect();
-        let Settings { seconds, patience, memory, lines, .. } = &self.settings;
+        let &Settings { seconds, patience, memory, ref lines, .. } = &self.settings;
         let mut cells = Vec::new();
         for line in lines {
             for engine in &engines {
                 for (quantity, method, threads) in self.methods(*engine) {
-                    let mut params = json!({
-                        "line": line.name, "of": line.of, "sizes": line.sizes_of(&engine.identity().name), "must": line.must,
-                        "seconds": seconds, "patience": patience, "memory": memory, "seed": context.seed,
-                    });
-                    if let Some(threads) = threads {
-                        params["threads"] = threads.into();
-                    }
                     let identity = engine.identity();
-                    cells.push(Cell {
-                        study: self.name().into(),
-                        robot: line.name.clone(),
-                        robot_hash: String::new(),
-                        params,
-                        engine: identity.name.clone(),
-                        version: identity.version.clone(),
-                        method,
-                        quantity: quantity.name().into(),
-                        scalar: "f64".into(),
-                    });
+                    let params = Params {
+                        of_line: OfLine { line: line.name.clone(), threads },
+                        of: line.of.clone(),
+                        sizes: line.sizes_of(&identity.name).to_vec(),
+                        must: line.must,
+                        seconds,
+                        patience,
+                        memory,
+                        seed: context.seed,
+                    };
+                    let cell = Cell::of_case(self.name(), &line.name, (&identity.name, &identity.version), quantity.name(), method, params);
+                    cells.push(Cell { robot_hash: String::new(), ..cell });
                 }
             }
         }
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        match self.line(context, cell) {
-            Ok(grown) => Outcome::Text(grown.to_text()),
-            Err(no_answer) => Outcome::NoAnswer(no_answer),
-        }
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        self.line(asked).map(|grown| grown.to_text()).into()
     }
 
     /// All rows come from [`Study::compare_all`]: no tree is a robot of the suite.

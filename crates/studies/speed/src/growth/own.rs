@@ -1,5 +1,6 @@
 //! Our methods that are measured, and what each is compared with.
 
+use super::OfLine;
 use featherbench_bench::{Cell, OWN, Quantity};
 
 /// A method of ours.
@@ -57,11 +58,12 @@ impl Own {
 
 /// The threads of a cell: a parameter of cells of parallel methods.
 pub(super) fn threads(cell: &Cell) -> usize {
-    cell.params["threads"].as_u64().and_then(|threads| usize::try_from(threads).ok()).unwrap_or(1)
+    cell.params::<OfLine>().ok().and_then(|params| params.threads).unwrap_or(1)
 }
 
 /// Our method of a cell.
 pub(super) fn of(cell: &Cell) -> Option<&'static Own> {
-    let named = |own: &&Own| own.quantity.name() == cell.quantity && own.name(threads(cell)) == cell.method;
+    let threads = threads(cell);
+    let named = |own: &&Own| own.quantity.name() == cell.quantity && own.name(threads) == cell.method;
     METHODS.iter().find(named).filter(|_| cell.engine == OWN)
 }

@@ -1,15 +1,15 @@
 //! The rows of the study, from the text of each line.
 
 use super::line::{Grown, Point, Stop};
-use super::own;
 use super::slope::{self, Interval};
+use super::{OfLine, Params, own};
 use crate::scaling::crossing;
 use featherbench_bench::measure::ratio;
-use featherbench_bench::{Cell, Context, Finished, Outcome};
+use featherbench_bench::{Cell, Context, Finished, Outcome, params};
 use featherbench_report::fit::power_law;
-use featherbench_results::{Kind, Relation, Row, Verdict, canonical_json};
+use featherbench_results::{Kind, Relation, Row, Verdict};
 use featherbench_robots::Random;
-use serde_json::json;
+use featherbench_study::case_row;
 use std::collections::BTreeSet;
 
 /// From so many dofs on, the whole resident memory over the dofs is a row: program and libraries take some bytes per dof of it.
@@ -43,23 +43,8 @@ pub(super) fn rows(context: &Context, finished: &[Finished]) -> Vec<Row> {
 
 /// A row about a whole line.
 fn blank(cell: &Cell) -> Row {
-    let mut params = json!({"line": cell.robot});
-    if let Some(threads) = cell.params.get("threads") {
-        params["threads"] = threads.clone();
-    }
-    Row {
-        cell: cell.id(),
-        study: cell.study.clone(),
-        family: cell.robot.clone(),
-        engine: cell.engine.clone(),
-        engine_version: cell.version.clone(),
-        method: cell.method.clone(),
-        precision: cell.scalar.clone(),
-        quantity: cell.quantity.clone(),
-        kind: Kind::Measured,
-        params: canonical_json(&params),
-        ..Row::default()
-    }
+    let params = cell.params::<OfLine>().unwrap_or_default();
+    Row { kind: Kind::Measured, params: params::text(&params), ..case_row(cell) }
 }
 
 /// A row about one size.
@@ -118,7 +103,7 @@ fn largest(context: &Context, cell: &Cell, row: Row, grown: &Grown) -> Row {
     let dofs = grown.points.last().map_or(0, |point| point.dofs) as f64;
     let Some(Stop { size, tree, reason, offered }) = &grown.stop else { return row.informed(dofs) };
     let reason = format!("{tree}: {reason}");
-    let must = cell.params["must"].as_u64().unwrap_or(u64::MAX);
+    let must = cell.params::<Params>().map_or(u64::MAX, |params| params.must);
     if *offered && *size <= must {
         return context.gates.explain(row.without_value(Verdict::Error, reason));
     }

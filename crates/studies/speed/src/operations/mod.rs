@@ -10,24 +10,24 @@
 
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::{Crba, Ltdl, TreeSparse};
 use featherbench_model::Description;
 use featherbench_results::{Relation, Row, Verdict};
 use featherbench_spatial::{Counted, Operations};
-use featherbench_study::{Entry, Made, Setup, no_section, row};
+use featherbench_study::{Entry, no_section, row, unanswered};
 use serde_json::json;
 
 /// The operations study.
 pub struct OperationCounts;
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "operations", make: of_suite, sections: no_section, words: words::WORDS };
-
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>("operations")?.map(|_| Box::new(OperationCounts) as _))
-}
+pub const ENTRY: Entry = Entry {
+    name: "operations",
+    make: |setup| setup.made("operations", |_: NoSettings| OperationCounts),
+    sections: no_section,
+    words: words::WORDS,
+};
 
 /// A scalar that counts is a hundred times slower; larger robots are counted in the tests of `dynamics`.
 const MOST_DOFS: usize = 1100;
@@ -67,18 +67,17 @@ impl Study for OperationCounts {
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        let (Some(robot), Some(engine)) = (context.robot(&cell.robot), context.engine(&cell.engine)) else {
-            return Outcome::NoAnswer(NoAnswer::Failed("there is no robot or engine of this cell".into()));
-        };
-        if cell.engine == OWN {
-            return counts(robot).map_err(NoAnswer::Failed).into();
-        }
-        let stored = engine.prepare(robot, Quantity::StoredEntries, &cell.method, &robot.states).and_then(|mut prepared| {
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        let stored = || {
+            let (robot, engine) = (asked.robot()?, asked.engine()?);
+            if asked.cell.engine == OWN {
+                return counts(robot).map_err(NoAnswer::Failed);
+            }
+            let mut prepared = engine.prepare(robot, Quantity::StoredEntries, &asked.cell.method, &robot.states)?;
             prepared.run(0..1)?;
             Ok(prepared.read().to_vec())
-        });
-        stored.into()
+        };
+        stored().into()
     }
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
@@ -94,8 +93,7 @@ impl Study for OperationCounts {
                     }
                 }
                 Outcome::NoAnswer(no_answer) => {
-                    let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
-                    rows.push(context.gates.explain(row(cell, robot).without_value(verdict, no_answer.to_string())));
+                    rows.push(context.gates.explain(unanswered(row(cell, robot), no_answer, Verdict::Skip)));
                 }
             }
         }

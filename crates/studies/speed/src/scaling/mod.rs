@@ -29,12 +29,11 @@ pub(crate) use dynamics::{relative_error, truth};
 pub(crate) use work::crossing;
 
 use crate::operations;
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, OWN, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_results::Row;
-use featherbench_study::{Entry, Made, Setup};
+use featherbench_study::Entry;
 use fill::Order;
-use serde::Deserialize;
-use serde_json::json;
+use serde::{Deserialize, Serialize};
 
 /// The scaling study.
 pub struct Scaling {
@@ -85,11 +84,37 @@ impl Line {
 }
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry { name: "scaling", make: of_suite, sections: section::sections, words: words::WORDS };
+pub const ENTRY: Entry = Entry {
+    name: "scaling",
+    make: |setup| setup.made("scaling", |settings| Scaling { settings }),
+    sections: section::sections,
+    words: words::WORDS,
+};
 
-/// The study, if the suite asks for it.
-fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<Settings>("scaling")?.map(|settings| Box::new(Scaling { settings }) as _))
+/// What a cell or a row is about: its parameters.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "what", rename_all = "snake_case")]
+pub(crate) enum What {
+    /// Of a row: whether the operations were counted, or taken from the pattern.
+    Counts {
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        route: Option<String>,
+    },
+    FillIn,
+    Factors,
+    Others,
+    Floor,
+    Dynamics,
+    Parallel,
+    /// Of a cell: its line.
+    Work {
+        #[serde(default)]
+        line: String,
+    },
+    /// Of a row alone: where two ways are predicted to take the same time, with so many numbers in a register.
+    Crossover {
+        lanes: f64,
+    },
 }
 
 /// Up to this many multiply-subtracts the kernels run on a scalar that counts: some seconds. Above it the kernels' pattern is counted.
@@ -111,52 +136,52 @@ impl Study for Scaling {
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let Some(featherbench) = context.engine(OWN) else { return Vec::new() };
         let Settings { counts, factors, engines, dynamics, by_factorization, sub_trees, both_ends, lines } = &self.settings;
-        let cell = |tree: &str, quantity: Quantity, method: &str, what: serde_json::Value| {
+        let cell = |tree: &str, quantity: Quantity, method: &str, what: What| {
             tree::cell(self.name(), context.seed, tree, featherbench.identity(), quantity.name(), method, what)
         };
         let robots: Vec<&String> = context.robots.iter().filter(|robot| robot.takes(self.name())).map(|robot| &robot.name).collect();
         let mut cells = Vec::new();
         for tree in counts.iter().chain(robots.iter().copied()) {
-            cells.push(cell(tree, Quantity::StoredEntries, "ltdl", json!({"what": "counts"})));
+            cells.push(cell(tree, Quantity::StoredEntries, "ltdl", What::Counts { route: None }));
         }
         for tree in factors.iter().chain(robots.iter().copied()) {
             for order in Order::ALL {
-                cells.push(cell(tree, Quantity::Factorization, order.name(), json!({"what": "fill_in"})));
+                cells.push(cell(tree, Quantity::Factorization, order.name(), What::FillIn));
             }
-            cells.push(cell(tree, Quantity::Factorization, "ltdl", json!({"what": "factors"})));
+            cells.push(cell(tree, Quantity::Factorization, "ltdl", What::Factors));
         }
         let others = others::engines(context, engines);
         for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
             cells.extend(others::cells(&others, self.name(), robot));
         }
         for tree in dynamics {
-            cells.push(cell(tree, Quantity::ForwardDynamics, "floor", json!({"what": "floor"})));
+            cells.push(cell(tree, Quantity::ForwardDynamics, "floor", What::Floor));
             let factorizing = by_factorization.contains(tree).then_some("ltdl");
             for method in METHODS.into_iter().chain(factorizing) {
-                cells.push(cell(tree, Quantity::ForwardDynamics, method, json!({"what": "dynamics"})));
+                cells.push(cell(tree, Quantity::ForwardDynamics, method, What::Dynamics));
             }
         }
         for tree in sub_trees {
             for (quantity, method, _) in parallel::BY_SUB_TREES {
-                cells.push(cell(tree, quantity, method, json!({"what": "parallel"})));
+                cells.push(cell(tree, quantity, method, What::Parallel));
             }
         }
         for tree in both_ends {
-            cells.push(cell(tree, Quantity::ForwardDynamics, parallel::FROM_BOTH_ENDS, json!({"what": "parallel"})));
+            cells.push(cell(tree, Quantity::ForwardDynamics, parallel::FROM_BOTH_ENDS, What::Parallel));
         }
         for line in lines {
             for tree in line.trees() {
-                cells.push(cell(&tree, Quantity::ForwardDynamics, "ltdl", json!({"what": "work", "line": line.name})));
+                cells.push(cell(&tree, Quantity::ForwardDynamics, "ltdl", What::Work { line: line.name.clone() }));
             }
         }
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+    fn evaluate(&self, asked: &Asked) -> Outcome {
         let answer = || -> Result<Vec<f64>, NoAnswer> {
-            let robot = tree::robot(context, &cell.robot)?;
+            let robot = tree::robot(asked)?;
             let mut values = tree::sizes(&robot).to_vec();
-            values.extend(self.values(context, cell, &robot)?);
+            values.extend(values_of(asked, &robot)?);
             Ok(values)
         };
         answer().into()
@@ -168,24 +193,20 @@ impl Study for Scaling {
     }
 }
 
-impl Scaling {
-    /// The values of a cell behind the sizes of its tree.
-    fn values(&self, context: &Context, cell: &Cell, robot: &Robot) -> Result<Vec<f64>, NoAnswer> {
-        let lost = || NoAnswer::Failed("there is no engine or question of this cell".into());
-        match cell.params["what"].as_str().unwrap_or_default() {
-            "counts" => counts(robot),
-            "fill_in" => {
-                let order = Order::ALL.into_iter().find(|order| order.name() == cell.method).ok_or_else(lost)?;
-                Ok(fill_in(robot, order))
-            }
-            "factors" => Ok(factor::errors(robot).map_err(NoAnswer::Failed)?.to_vec()),
-            others::WHAT => Ok(vec![others::value(context, cell, robot)?]),
-            "floor" => floor::estimate(robot, 0, context.seed).map(|floor| vec![floor]).ok_or_else(lost),
-            "dynamics" => Ok(vec![dynamics::error(context.engine(OWN).ok_or_else(lost)?, robot, &cell.method)?]),
-            "parallel" => Ok(parallel::counts(robot, &cell.method)?.to_vec()),
-            "work" => Ok(work::of_forward_dynamics(robot).map_err(NoAnswer::Failed)?.to_vec()),
-            _ => Err(lost()),
-        }
+/// The values of a cell behind the sizes of its tree.
+fn values_of(asked: &Asked, robot: &Robot) -> Result<Vec<f64>, NoAnswer> {
+    let method = asked.cell.method.as_str();
+    let lost = || NoAnswer::Failed("there is no question of this cell".into());
+    match asked.cell.params()? {
+        What::Counts { .. } => counts(robot),
+        What::FillIn => Ok(fill_in(robot, Order::ALL.into_iter().find(|order| order.name() == method).ok_or_else(lost)?)),
+        What::Factors => Ok(factor::errors(robot).map_err(NoAnswer::Failed)?.to_vec()),
+        What::Others => Ok(vec![others::value(asked, robot)?]),
+        What::Floor => floor::estimate(robot, 0, asked.context.seed).map(|floor| vec![floor]).ok_or_else(lost),
+        What::Dynamics => Ok(vec![dynamics::error(asked.engine()?, robot, method)?]),
+        What::Parallel => Ok(parallel::counts(robot, method)?.to_vec()),
+        What::Work { .. } => Ok(work::of_forward_dynamics(robot).map_err(NoAnswer::Failed)?.to_vec()),
+        What::Crossover { .. } => Err(lost()),
     }
 }
 

@@ -3,14 +3,11 @@
 //! The measures are those of `factor.rs`, and M is that of our own kernel. A library of linear algebra is given this M. An engine with
 //! robots makes its own, so that its error has the difference of the two in it.
 
-use super::factor;
-use super::tree;
-use featherbench_bench::{Cell, Context, Engine, NoAnswer, Quantity, Robot};
+use super::{What, factor, tree};
+use featherbench_bench::{Asked, Cell, Context, Engine, NoAnswer, Quantity, Robot};
 use featherbench_results::Row;
-use serde_json::json;
+use featherbench_study::as_many;
 
-/// What a row is about, in its parameters.
-pub(crate) const WHAT: &str = "others";
 /// What other engines are asked.
 const QUANTITIES: [Quantity; 3] = [Quantity::FactorEntries, Quantity::Factorization, Quantity::Solve];
 
@@ -18,7 +15,7 @@ const QUANTITIES: [Quantity; 3] = [Quantity::FactorEntries, Quantity::Factorizat
 pub(super) fn cells<'a>(engines: &'a [&dyn Engine], study: &'a str, robot: &'a Robot) -> impl Iterator<Item = Cell> + 'a {
     engines.iter().flat_map(move |engine| {
         QUANTITIES.into_iter().flat_map(move |quantity| {
-            let cell = move |method: String| Cell::new(study, robot, engine.identity(), quantity.name(), &method, json!({"what": WHAT}));
+            let cell = move |method: String| Cell::new(study, robot, engine.identity(), quantity.name(), &method, What::Others);
             engine.methods(quantity).into_iter().map(cell)
         })
     })
@@ -28,16 +25,12 @@ pub(super) fn cells<'a>(engines: &'a [&dyn Engine], study: &'a str, robot: &'a R
 ///
 /// # Errors
 /// [`NoAnswer`] of the engine.
-pub(super) fn value(context: &Context, cell: &Cell, robot: &Robot) -> Result<f64, NoAnswer> {
-    let lost = || NoAnswer::Failed("there is no engine or question of this cell".into());
-    let quantity = Quantity::parse(&cell.quantity).ok_or_else(lost)?;
-    let engine = context.engine(&cell.engine).ok_or_else(lost)?;
-    let mut prepared = engine.prepare(robot, quantity, &cell.method, &robot.states)?;
+pub(super) fn value(asked: &Asked, robot: &Robot) -> Result<f64, NoAnswer> {
+    let quantity = asked.quantity()?;
+    let mut prepared = asked.engine()?.prepare(robot, quantity, &asked.cell.method, &robot.states)?;
     prepared.run(0..1)?;
     let answer = prepared.read();
-    if answer.len() != quantity.size(robot) {
-        return Err(NoAnswer::Failed(format!("{} numbers came, {} are due", answer.len(), quantity.size(robot))));
-    }
+    as_many(answer.len(), quantity.size(robot))?;
     match quantity {
         Quantity::FactorEntries => Ok(answer[0] - robot.model.topology.stored() as f64),
         Quantity::Factorization => factor::error_of_factors(robot, answer).map_err(NoAnswer::Failed),

@@ -2,11 +2,12 @@
 
 use super::others;
 use super::tree::{self, SIZES};
-use super::{Line, crossing};
+use super::{Line, What, crossing};
 use crate::operations::COUNTS;
 use featherbench_bench::measure::ratio;
-use featherbench_bench::{Cell, Context, Finished, NoAnswer};
-use featherbench_results::{Relation, Row, Verdict, canonical_json};
+use featherbench_bench::{Cell, Context, Finished, params};
+use featherbench_results::{Relation, Row, Verdict};
+use featherbench_study::unanswered;
 use serde_json::json;
 
 /// What the values are compared with.
@@ -26,22 +27,22 @@ pub(super) fn rows(context: &Context, lines: &[Line], finished: &[Finished]) -> 
                 continue;
             }
             Err(no_answer) => {
-                let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
-                rows.push(context.gates.explain(others::blank(context, cell).without_value(verdict, no_answer.to_string())));
+                rows.push(context.gates.explain(unanswered(others::blank(context, cell), &no_answer, Verdict::Skip)));
                 continue;
             }
         };
         let (sizes, values) = values.split_at(SIZES);
         let blank = tree::row(context, cell, Some(sizes));
-        rows.extend(match cell.params["what"].as_str().unwrap_or_default() {
-            "counts" => counts(context, blank, values),
-            "fill_in" => fill_in(context, blank, values),
-            "factors" => factors(context, blank, sizes[1], values),
-            others::WHAT => vec![others::row(context, blank, sizes[1], values[0])],
-            "floor" => vec![Row { metric: "floor".into(), estimated: true, ..blank }.informed(values[0])],
-            "dynamics" => dynamics(context, blank, values[0], floor(cell, finished)),
-            "parallel" => parallel(context, blank, values),
-            _ => work(blank, cell, values),
+        rows.extend(match cell.params() {
+            Ok(What::Counts { .. }) => counts(context, blank, values),
+            Ok(What::FillIn) => fill_in(context, blank, values),
+            Ok(What::Factors) => factors(context, blank, sizes[1], values),
+            Ok(What::Others) => vec![others::row(context, blank, sizes[1], values[0])],
+            Ok(What::Floor) => vec![Row { metric: "floor".into(), estimated: true, ..blank }.informed(values[0])],
+            Ok(What::Dynamics) => dynamics(context, blank, values[0], floor(cell, finished)),
+            Ok(What::Parallel) => parallel(context, blank, values),
+            Ok(What::Work { line }) => work(blank, line, values),
+            Ok(What::Crossover { .. }) | Err(_) => Vec::new(),
         });
     }
     rows.extend(lines.iter().flat_map(|line| predicted(context, line, finished)));
@@ -52,7 +53,7 @@ pub(super) fn rows(context: &Context, lines: &[Line], finished: &[Finished]) -> 
 fn counts(context: &Context, blank: Row, values: &[f64]) -> Vec<Row> {
     let (Some((&counted, values)), count) = (values.split_first(), COUNTS.len()) else { return Vec::new() };
     let route = if counted == 1.0 { "counted" } else { "pattern" };
-    let params = canonical_json(&json!({"what": "counts", "route": route}));
+    let params = params::text(&What::Counts { route: Some(route.into()) });
     let (due, found) = values.split_at(count.min(values.len()));
     let metrics = COUNTS.iter().zip(due.iter().zip(found));
     metrics
@@ -85,7 +86,7 @@ fn factors(context: &Context, blank: Row, dofs: f64, values: &[f64]) -> Vec<Row>
 
 /// The conditioning bound of a cell's tree, from its own cell.
 fn floor(cell: &Cell, finished: &[Finished]) -> Option<f64> {
-    let of_tree = |(other, _): &&Finished| other.robot == cell.robot && other.params["what"] == "floor";
+    let of_tree = |(other, _): &&Finished| other.robot == cell.robot && matches!(other.params(), Ok(What::Floor));
     finished.iter().find(of_tree)?.1.values()?.get(SIZES).copied().filter(|floor| floor.is_finite())
 }
 
@@ -102,12 +103,11 @@ fn dynamics(context: &Context, blank: Row, error: f64, floor: Option<f64>) -> Ve
 }
 
 /// The operations of forward dynamics by the mass matrix over those of the articulated-body algorithm.
-fn work(blank: Row, cell: &Cell, values: &[f64]) -> Vec<Row> {
+fn work(blank: Row, family: String, values: &[f64]) -> Vec<Row> {
     let &[articulated, factorizing] = values else {
         return vec![blank.without_value(Verdict::Error, "the outcome has not two numbers")];
     };
-    let params = canonical_json(&json!({"what": "work", "aba": articulated, "ltdl": factorizing}));
-    let family = cell.params["line"].as_str().unwrap_or_default().into();
+    let params = params::text(&json!({"what": "work", "aba": articulated, "ltdl": factorizing}));
     let row = Row { family, metric: "work_ratio".into(), reference: "aba".into(), params, ..blank };
     vec![row.informed(ratio(factorizing, articulated))]
 }
@@ -117,7 +117,7 @@ fn parallel(context: &Context, blank: Row, values: &[f64]) -> Vec<Row> {
     let &[serial, work, span] = values else {
         return vec![blank.without_value(Verdict::Error, "the outcome has not three numbers")];
     };
-    let params = canonical_json(&json!({"what": "parallel", "serial": serial, "work": work, "span": span}));
+    let params = params::text(&json!({"what": "parallel", "serial": serial, "work": work, "span": span}));
     let row = |metric: &str, value: f64| {
         let row = Row { metric: metric.into(), reference: "serial".into(), params: params.clone(), ..blank.clone() };
         context.gates.judge(row, ratio(value, serial), 1.0)
@@ -131,7 +131,7 @@ fn parallel(context: &Context, blank: Row, values: &[f64]) -> Vec<Row> {
 /// there is one prediction for each number of lanes: the operations of the mass matrix are divided by it.
 fn predicted(context: &Context, line: &Line, finished: &[Finished]) -> Vec<Row> {
     let along = |(cell, outcome): &Finished| {
-        let of_line = cell.params["what"] == "work" && cell.params["line"] == line.name.as_str();
+        let of_line = matches!(cell.params(), Ok(What::Work { line: name }) if name == line.name);
         let values = outcome.values().filter(|_| of_line)?;
         Some((*values.get(1)?, ratio(*values.get(SIZES + 1)?, *values.get(SIZES)?)))
     };
@@ -140,7 +140,7 @@ fn predicted(context: &Context, line: &Line, finished: &[Finished]) -> Vec<Row> 
     let blank = tree::row(context, first, None);
     let row = |lanes: f64| {
         let at = crossing(&points.iter().map(|(n, ratio)| (*n, ratio / lanes)).collect::<Vec<_>>())?;
-        let params = canonical_json(&json!({"what": "crossover", "lanes": lanes}));
+        let params = params::text(&What::Crossover { lanes });
         let (robot, family, metric) = (String::new(), line.name.clone(), "crossover_predicted".into());
         Some(Row { robot, family, metric, reference: "aba".into(), params, ..blank.clone() }.informed(at))
     };

@@ -1,20 +1,20 @@
 //! A tree of the study: a robot of the suite, or one that its generator gives when it is needed.
 
-use featherbench_bench::alone;
-use featherbench_bench::{Cell, Context, Identity, NoAnswer, Robot};
+use super::What;
+use featherbench_bench::{Asked, Cell, Context, Identity, NoAnswer, Robot, alone, hash};
 use featherbench_model::Description;
 use featherbench_results::Row;
-use serde_json::Value;
+use featherbench_study::case_row;
 use std::borrow::Cow;
 
 /// The sizes of a tree, at the beginning of the values of each cell: generated trees are not kept.
 pub(crate) const SIZES: usize = 4;
 
 /// The robot of a cell. A generated one is known by its generator's text.
-pub(super) fn robot<'a>(context: &'a Context, name: &str) -> Result<Cow<'a, Robot>, NoAnswer> {
-    match context.robot(name) {
-        Some(robot) => Ok(Cow::Borrowed(robot)),
-        None => alone::robot(name, context.seed).map(Cow::Owned),
+pub(super) fn robot<'a>(asked: &Asked<'a>) -> Result<Cow<'a, Robot>, NoAnswer> {
+    match asked.robot() {
+        Ok(robot) => Ok(Cow::Borrowed(robot)),
+        Err(_) => alone::robot(&asked.cell.robot, asked.context.seed).map(Cow::Owned),
     }
 }
 
@@ -24,19 +24,10 @@ pub(super) fn sizes(robot: &Robot) -> [f64; SIZES] {
 }
 
 /// A cell about a tree that is not among the suite's robots.
-pub(crate) fn cell(study: &str, seed: u64, tree: &str, engine: &Identity, quantity: &str, method: &str, params: Value) -> Cell {
-    Cell {
-        study: study.into(),
-        robot: tree.into(),
-        // The text and the seed of the state are all there is to it.
-        robot_hash: featherbench_bench::hash::of_parts(&[tree.as_bytes(), &seed.to_le_bytes()]),
-        params,
-        engine: engine.name.clone(),
-        version: engine.version.clone(),
-        method: method.into(),
-        quantity: quantity.into(),
-        scalar: "f64".into(),
-    }
+pub(crate) fn cell(study: &str, seed: u64, tree: &str, engine: &Identity, quantity: &str, method: &str, what: What) -> Cell {
+    // The text and the seed of the state are all there is to it.
+    let robot_hash = hash::of_parts(&[tree.as_bytes(), &seed.to_le_bytes()]);
+    Cell { robot_hash, ..Cell::of_case(study, tree, (&engine.name, &engine.version), quantity, method, what) }
 }
 
 /// The family of a tree: that of the robot, or the first word of the generator's text.
@@ -48,22 +39,14 @@ pub(crate) fn family(context: &Context, tree: &str) -> String {
 pub(crate) fn row(context: &Context, cell: &Cell, sizes: Option<&[f64]>) -> Row {
     let size = |which: usize| sizes.and_then(|sizes| sizes.get(which)).map(|&size| size as u64);
     Row {
-        cell: cell.id(),
-        study: cell.study.clone(),
         family: family(context, &cell.robot),
         robot: cell.robot.clone(),
         nq: size(0),
         nv: size(1),
         bodies: size(2),
         depth: size(3),
-        params: featherbench_results::canonical_json(&cell.params),
-        engine: cell.engine.clone(),
-        engine_version: cell.version.clone(),
-        method: cell.method.clone(),
-        precision: cell.scalar.clone(),
-        quantity: cell.quantity.clone(),
         unit: "1".into(),
-        ..Row::default()
+        ..case_row(cell)
     }
 }
 

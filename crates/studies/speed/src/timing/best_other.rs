@@ -1,11 +1,11 @@
 //! Our methods beside the best of some engines: the time of the fastest of their methods over that of our own.
 
-use super::rows::{Check, Experiment, estimated, judged, params};
+use super::rows::{Check, Experiment, RowParams, estimated, judged};
 use super::samples::Candidate;
 use super::{BEST_OTHER, REFERENCE};
-use featherbench_bench::statistics::quantile;
-use featherbench_bench::statistics::{Estimate, LEVEL};
-use featherbench_results::{Row, canonical_json};
+use featherbench_bench::params;
+use featherbench_bench::statistics::{Estimate, LEVEL, quantile};
+use featherbench_results::Row;
 
 impl Experiment<'_> {
     /// The rows `best_other`, one for each of our methods: the time of the fastest method of these engines over its own, in the same rounds.
@@ -34,8 +34,7 @@ impl Experiment<'_> {
             let Some((other, _)) = medians.min_by(|(_, a), (_, b)| a.total_cmp(b)) else { continue };
             let name = format!("{} {} beside {}", own.method, own.quantity, named(other));
             let ratio = Estimate::ratio(samples.of(other), samples.of(which), LEVEL, &mut self.random(&name));
-            let mut params = params(self.cell);
-            params["others"] = others.iter().map(|&other| named(other)).collect();
+            let params = RowParams { others: Some(others.iter().map(|&other| named(other)).collect()), ..self.params.clone() };
             let blank = Row {
                 engine: own.engine.clone(),
                 engine_version: own.version.clone(),
@@ -44,7 +43,7 @@ impl Experiment<'_> {
                 metric: BEST_OTHER.into(),
                 unit: "1".into(),
                 reference: named(other),
-                params: canonical_json(&params),
+                params: params::text(&params),
                 estimated: self.candidates[other].estimate,
                 ..self.blank.clone()
             };

@@ -24,7 +24,7 @@ pub(crate) mod samples;
 pub(crate) mod section;
 pub(crate) mod words;
 
-use featherbench_bench::{Cell, Context, Engine, Finished, HarnessError, NoAnswer, OWN, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Asked, Cell, Context, Engine, Finished, HarnessError, NoAnswer, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_results::Row;
 use featherbench_robots::{Random, StateBatch};
 use featherbench_study::{Entry, Made, Setup};
@@ -33,8 +33,7 @@ use protocol::{Budget, Ready};
 use samples::Candidate;
 pub use section::{InstructionCounts, instructions};
 use serde::de::Error;
-use serde::{Deserialize, Deserializer};
-use serde_json::{Value, json};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::time::Instant;
 
 /// The timing study.
@@ -100,17 +99,40 @@ const SAMPLES_NAME: &str = "timing.jsonl";
 const REFERENCE: &str = OWN;
 /// The metric of the time of the fastest method of some engines over that of one of ours.
 const BEST_OTHER: &str = "best_other";
-/// The kinds of cells, as their parameter `what`.
+/// The quantity of the rows of the machine.
 const MACHINE: &str = "machine";
-const CHECK: &str = "check";
-const OVERHEAD: &str = "overhead";
-const EXPERIMENT: &str = "experiment";
 /// The cache regimes.
 const REGIMES: [&str; 2] = ["stream", "hot"];
 /// The largest number of values of states in memory at once: 100 MB, far more than any cache.
 const MOST_NUMBERS: usize = 12_000_000;
 /// The largest number of entries of mass matrices, if a quantity is one or needs one: the registry keeps as many.
 const MOST_ENTRIES: usize = 4 << 20;
+
+/// The kinds of cells, with their parameters.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "what", rename_all = "snake_case")]
+enum CellKind {
+    Machine,
+    Check { states: usize },
+    Overhead { states: usize },
+    Experiment(Paired),
+}
+
+/// The parameters of an experiment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Paired {
+    cache: String,
+    states: usize,
+    seconds: f64,
+    candidates: Vec<Candidate>,
+}
+
+impl Paired {
+    /// Those of a cell; `None` of any other cell.
+    fn of(cell: &Cell) -> Option<Self> {
+        if let Ok(CellKind::Experiment(paired)) = cell.params() { Some(paired) } else { None }
+    }
+}
 
 /// The largest robot, in dofs, that is timed through an interpreter. Converting a thousand states of a larger one takes minutes per method.
 const LARGEST_ESTIMATE: usize = 64;
@@ -138,12 +160,12 @@ impl Study for Timing {
     }
 
     fn is_common(&self, cell: &Cell) -> bool {
-        cell.params["what"] == MACHINE
+        matches!(cell.params(), Ok(CellKind::Machine))
     }
 
     /// The time that each candidate is given; other cells take about as long as one candidate.
     fn seconds(&self, _: &Context, cell: &Cell) -> f64 {
-        let candidates = cell.params["candidates"].as_array().map_or(1, Vec::len);
+        let candidates = Paired::of(cell).map_or(1, |paired| paired.candidates.len());
         self.settings.seconds * candidates as f64
     }
 
@@ -153,68 +175,33 @@ impl Study for Timing {
         for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
             if cells.is_empty() {
                 // The cell of the machine is evaluated once, with the first robot.
-                cells.push(self.cell(robot, featherbench, Quantity::StoredEntries, "empty", json!({"what": MACHINE})));
+                cells.push(self.cell(robot, featherbench, Quantity::StoredEntries, "empty", CellKind::Machine));
             }
             for (quantity, candidates) in self.experiments(context, robot) {
                 let states = self.stream_length(robot, quantity);
                 for candidate in candidates.iter().filter(|candidate| !candidate.control) {
                     let Some(engine) = context.engine(&candidate.engine) else { continue };
                     let answered = Quantity::parse(&candidate.quantity).unwrap_or(quantity);
-                    cells.push(self.cell(robot, engine, answered, &candidate.method, json!({"what": CHECK, "states": states})));
+                    cells.push(self.cell(robot, engine, answered, &candidate.method, CellKind::Check { states }));
                     if candidate.estimate && !refused(robot, candidate.estimate) {
-                        cells.push(self.cell(robot, engine, quantity, &candidate.method, json!({"what": OVERHEAD, "states": states})));
+                        cells.push(self.cell(robot, engine, quantity, &candidate.method, CellKind::Overhead { states }));
                     }
                 }
                 let Some(usual) = candidates.first() else { continue };
                 let timed = candidates.iter().filter(|candidate| !refused(robot, candidate.estimate));
-                let listed: Vec<Value> = timed.map(Candidate::to_params).collect();
+                let timed: Vec<Candidate> = timed.cloned().collect();
                 for regime in REGIMES {
                     let states = if regime == "hot" { 1 } else { states };
-                    let params = json!({"what": EXPERIMENT, "cache": regime, "states": states, "seconds": self.settings.seconds, "candidates": listed});
-                    cells.push(self.cell(robot, featherbench, quantity, &usual.method, params));
+                    let paired = Paired { cache: regime.into(), states, seconds: self.settings.seconds, candidates: timed.clone() };
+                    cells.push(self.cell(robot, featherbench, quantity, &usual.method, CellKind::Experiment(paired)));
                 }
             }
         }
         cells
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        let lost = || NoAnswer::Failed("there is no robot, engine or quantity of this cell".into());
-        let answer = || -> Result<Vec<f64>, NoAnswer> {
-            let robot = context.robot(&cell.robot).ok_or_else(lost)?;
-            let featherbench = context.engine(REFERENCE).ok_or_else(lost)?;
-            let engine = context.engine(&cell.engine).ok_or_else(lost)?;
-            let quantity = Quantity::parse(&cell.quantity).ok_or_else(lost)?;
-            if cell.params["what"] == MACHINE {
-                let mut empty = featherbench.prepare(robot, quantity, "topology", &robot.states)?;
-                let _pinned = Pinned::to_one_core();
-                return Ok(Machine::measure(empty.as_mut())?.to_values());
-            }
-            if refused(robot, engine.estimates()) {
-                let reason = format!("times that are estimates are taken of robots up to {LARGEST_ESTIMATE} degrees of freedom");
-                return Err(NoAnswer::NotOffered(reason));
-            }
-            let count = cell.params["states"].as_u64().and_then(|count| usize::try_from(count).ok()).ok_or_else(lost)?;
-            let states = StateBatch::random(&robot.model, count, context.seed);
-            if cell.params["what"] == CHECK {
-                return check::errors(&robot.clone().at(states), featherbench, engine, quantity, &cell.method);
-            }
-            let _pinned = Pinned::to_one_core();
-            if cell.params["what"] == OVERHEAD {
-                return overhead::per_call(engine.prepare(robot, quantity, &cell.method, &states)?.as_mut());
-            }
-            let candidates = Candidate::of(cell);
-            let prepare = |which: usize| -> Ready {
-                let Candidate { engine, quantity, method, .. } = &candidates[which];
-                let quantity = Quantity::parse(quantity).ok_or_else(lost)?;
-                context.engine(engine).ok_or_else(lost)?.prepare(robot, quantity, method, &states)
-            };
-            let mut random = Random::named(context.seed, &cell.id());
-            let start = Instant::now();
-            let clock = || start.elapsed();
-            Ok(protocol::experiment(&prepare, candidates.len(), count, Budget::of(self.settings.seconds), &clock, &mut random).to_values())
-        };
-        answer().into()
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        self.measured(asked).into()
     }
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
@@ -228,7 +215,48 @@ impl Study for Timing {
 }
 
 impl Timing {
-    fn cell(&self, robot: &Robot, engine: &dyn Engine, quantity: Quantity, method: &str, params: Value) -> Cell {
+    /// The numbers of a cell.
+    fn measured(&self, asked: &Asked) -> Result<Vec<f64>, NoAnswer> {
+        let Asked { context, cell, .. } = *asked;
+        let (robot, engine, quantity) = (asked.robot()?, asked.engine()?, asked.quantity()?);
+        let featherbench = context.engine(REFERENCE).ok_or_else(|| NoAnswer::Failed("our engine is not there".into()))?;
+        let kind: CellKind = cell.params()?;
+        if kind != CellKind::Machine && refused(robot, engine.estimates()) {
+            let reason = format!("times that are estimates are taken of robots up to {LARGEST_ESTIMATE} degrees of freedom");
+            return Err(NoAnswer::NotOffered(reason));
+        }
+        let random = |count| StateBatch::random(&robot.model, count, context.seed);
+        match kind {
+            CellKind::Machine => {
+                let mut empty = featherbench.prepare(robot, quantity, "topology", &robot.states)?;
+                let _pinned = Pinned::to_one_core();
+                Ok(Machine::measure(empty.as_mut())?.to_values())
+            }
+            CellKind::Check { states } => check::errors(&robot.clone().at(random(states)), featherbench, engine, quantity, &cell.method),
+            CellKind::Overhead { states } => {
+                let states = random(states);
+                let _pinned = Pinned::to_one_core();
+                overhead::per_call(engine.prepare(robot, quantity, &cell.method, &states)?.as_mut())
+            }
+            CellKind::Experiment(Paired { states: count, candidates, .. }) => {
+                let states = random(count);
+                let _pinned = Pinned::to_one_core();
+                let prepare = |which: usize| -> Ready {
+                    let Candidate { engine, quantity, method, .. } = &candidates[which];
+                    let lost = || NoAnswer::Failed("there is no engine or quantity of this candidate".into());
+                    let quantity = Quantity::parse(quantity).ok_or_else(lost)?;
+                    context.engine(engine).ok_or_else(lost)?.prepare(robot, quantity, method, &states)
+                };
+                let mut random = Random::named(context.seed, &cell.id());
+                let start = Instant::now();
+                let clock = || start.elapsed();
+                let budget = Budget::of(self.settings.seconds);
+                Ok(protocol::experiment(&prepare, candidates.len(), count, budget, &clock, &mut random).to_values())
+            }
+        }
+    }
+
+    fn cell(&self, robot: &Robot, engine: &dyn Engine, quantity: Quantity, method: &str, params: CellKind) -> Cell {
         Cell { scalar: quantity.precision().into(), ..Cell::new(self.name(), robot, engine.identity(), quantity.name(), method, params) }
     }
 

@@ -1,36 +1,41 @@
 //! Rows of the outcomes of a robot's cells.
 
 use super::machine::Machine;
-use super::samples::{Candidate, Samples, outcome_samples};
-use super::{CHECK, EXPERIMENT, MACHINE, OVERHEAD, REFERENCE, check};
+use super::samples::{Candidate, Samples};
+use super::{CellKind, MACHINE, Paired, REFERENCE, check};
 use featherbench_bench::measure::worst;
 use featherbench_bench::statistics::quantile;
 use featherbench_bench::statistics::{CONTROL_LEVEL, Estimate, Finding, LEVEL};
-use featherbench_bench::{Cell, Finished, Gates, NoAnswer, Outcome, Robot};
-use featherbench_results::{Kind, Relation, Row, Verdict, canonical_json};
+use featherbench_bench::{Cell, Finished, Gates, NoAnswer, Outcome, Robot, params};
+use featherbench_results::{Kind, Relation, Row, Verdict};
 use featherbench_robots::Random;
 use featherbench_spatial::peak::LANES;
-use featherbench_study::row;
-use serde_json::{Value, json};
+use featherbench_study::{row, unanswered};
+use serde::{Deserialize, Serialize};
 
 /// An experiment whose A/A ratio is bad is not valid. If more than one in this number of a robot's A/A ratios is bad, none of its times is.
 const BAD_CONTROLS: usize = 4;
 
 /// All rows of a robot.
 pub(super) fn rows(gates: &Gates, robot: &Robot, best_of: &[String], finished: &[Finished]) -> Vec<Row> {
-    let of_kind = |what: &'static str| finished.iter().filter(move |(cell, _)| cell.params["what"] == what);
-    let checks: Vec<Check> = of_kind(CHECK).map(|finished| Check::of(gates, robot, finished)).collect();
-    let experiments: Vec<Experiment> = of_kind(EXPERIMENT).map(|finished| Experiment::of(robot, finished)).collect();
+    let (mut checks, mut experiments, mut machines, mut overheads) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for item in finished {
+        match item.0.params() {
+            Ok(CellKind::Machine) => machines.extend(machine(&item.0, robot, &item.1)),
+            Ok(CellKind::Check { .. }) => checks.push(Check::of(gates, robot, item)),
+            Ok(CellKind::Overhead { .. }) => overheads.extend(overhead(robot, item)),
+            Ok(CellKind::Experiment(paired)) => experiments.push(Experiment::of(robot, item, paired)),
+            Err(_) => {}
+        }
+    }
     let noise = noise(&experiments);
-    let machine = of_kind(MACHINE).flat_map(|(cell, outcome)| machine(cell, robot, outcome));
     let checked = checks.iter().filter_map(|check| check.row.clone());
-    let overheads = of_kind(OVERHEAD).filter_map(|finished| overhead(robot, finished));
     let timed = experiments.iter().flat_map(|experiment| {
         let mut rows = experiment.rows(&checks, noise.as_deref());
         rows.extend(experiment.beside(best_of, &checks, noise.as_deref()));
         rows
     });
-    machine.chain(checked).chain(overheads).chain(timed).collect()
+    machines.into_iter().chain(checked).chain(overheads).chain(timed).collect()
 }
 
 /// Why no time of this robot counts: too many of its A/A ratios show that the machine was not quiet, or are missing.
@@ -115,10 +120,7 @@ impl Check {
             Row { cache: "stream".into(), metric: "worst_error".into(), unit: "1".into(), reference: REFERENCE.into(), ..row(cell, robot) };
         let limit = check::limit(robot.depth, &cell.quantity);
         let row = match outcome.answer() {
-            Err(no_answer) => {
-                let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
-                blank.without_value(verdict, no_answer.to_string())
-            }
+            Err(no_answer) => unanswered(blank, &no_answer, Verdict::Skip),
             Ok(errors) => blank.gated(errors.iter().copied().fold(0.0, worst), Relation::Le, limit),
         };
         let complaint = match row.verdict {
@@ -152,6 +154,7 @@ impl Check {
 /// One experiment with its statistics.
 pub(super) struct Experiment<'a> {
     pub(super) cell: &'a Cell,
+    pub(super) params: RowParams,
     pub(super) blank: Row,
     pub(super) candidates: Vec<Candidate>,
     pub(super) samples: Result<Samples, String>,
@@ -160,15 +163,14 @@ pub(super) struct Experiment<'a> {
 }
 
 impl<'a> Experiment<'a> {
-    fn of(robot: &Robot, (cell, outcome): &'a Finished) -> Self {
-        let candidates = Candidate::of(cell);
+    fn of(robot: &Robot, (cell, outcome): &'a Finished, Paired { cache, states, seconds, candidates }: Paired) -> Self {
         let samples = match outcome.answer() {
             Err(no_answer) => Err(no_answer.to_string()),
-            Ok(_) => outcome_samples(cell, outcome).ok_or_else(|| "the outcome holds no samples".to_owned()),
+            Ok(_) => Samples::of_outcome(outcome, candidates.len()).ok_or_else(|| "the outcome holds no samples".to_owned()),
         };
-        let cache = cell.params["cache"].as_str().unwrap_or_default().to_owned();
-        let blank = Row { kind: Kind::Measured, cache, params: canonical_json(&params(cell)), ..row(cell, robot) };
-        let mut experiment = Self { cell, blank, candidates, samples, control: Err("the experiment has no A/A control") };
+        let params = RowParams { states, seconds, ..RowParams::default() };
+        let blank = Row { kind: Kind::Measured, cache, params: params::text(&params), ..row(cell, robot) };
+        let mut experiment = Self { cell, params, blank, candidates, samples, control: Err("the experiment has no A/A control") };
         if let (Some(which), Ok(samples)) = (experiment.candidates.iter().position(|candidate| candidate.control), &experiment.samples) {
             let ratio = Estimate::ratio(samples.of(which), samples.of(0), CONTROL_LEVEL, &mut experiment.random("control"));
             let known = ratio.value.is_finite() && ratio.low.is_finite() && ratio.high.is_finite();
@@ -233,7 +235,7 @@ impl<'a> Experiment<'a> {
             let time = Estimate::median(ns, LEVEL, &mut self.random(&name));
             let complaint = complaint.or(noise).or(own_noise.as_deref());
             let blank = Row { estimated: candidate.estimate, ..blank };
-            let timed = Row { metric: "ns_per_call".into(), unit: "ns".into(), params: with_deciles(self.cell, ns), ..blank.clone() };
+            let timed = Row { metric: "ns_per_call".into(), unit: "ns".into(), params: self.params.with_deciles(ns), ..blank.clone() };
             rows.push(judged(estimated(timed, &time), complaint));
             if which > 0 {
                 let ratio = Estimate::ratio(ns, samples.of(0), LEVEL, &mut self.random(&format!("{name} ratio")));
@@ -257,15 +259,26 @@ pub(crate) fn estimated(blank: Row, estimate: &Estimate) -> Row {
 }
 
 /// The parameters of an experiment's rows. The candidates are in rows of their own: a list of them here would be in each.
-pub(super) fn params(cell: &Cell) -> Value {
-    json!({"states": cell.params["states"], "seconds": cell.params["seconds"]})
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub(super) struct RowParams {
+    pub(super) states: usize,
+    pub(super) seconds: f64,
+    /// The first and the last decile of a time's blocks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) p10: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) p90: Option<f64>,
+    /// Of `best_other`: the methods of which the fastest is taken.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) others: Option<Vec<String>>,
 }
 
-/// The same of a time, with the first and the last decile of its blocks.
-fn with_deciles(cell: &Cell, ns: &[f64]) -> String {
-    let mut sorted = ns.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let mut params = params(cell);
-    (params["p10"], params["p90"]) = (json!(quantile(&sorted, 0.1)), json!(quantile(&sorted, 0.9)));
-    canonical_json(&params)
+impl RowParams {
+    fn with_deciles(&self, ns: &[f64]) -> String {
+        let mut sorted = ns.to_vec();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let [p10, p90] = [0.1, 0.9].map(|fraction| Some(quantile(&sorted, fraction)));
+        params::text(&Self { p10, p90, ..self.clone() })
+    }
 }

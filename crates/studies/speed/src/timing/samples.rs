@@ -1,6 +1,8 @@
 //! Raw samples: the data of an experiment, as the outcome of its cell and as a line of the run's side file.
 
-use featherbench_bench::{Cell, Finished, Outcome, Quantity};
+use super::Paired;
+use featherbench_bench::{Finished, Outcome, Quantity};
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 /// The blocks of an experiment: nanoseconds per call, of every candidate in every round.
@@ -43,10 +45,15 @@ impl Samples {
         let whole = candidates > 0 && ns.len().is_multiple_of(candidates);
         whole.then(|| Self { calls: calls.iter().map(|&calls| calls as usize).collect(), rounds: ns.len() / candidates, ns: ns.to_vec() })
     }
+
+    /// The samples of a finished experiment with so many candidates.
+    pub fn of_outcome(outcome: &Outcome, candidates: usize) -> Option<Self> {
+        Self::from_values(outcome.values()?).filter(|samples| samples.calls.len() == candidates)
+    }
 }
 
 /// A candidate of an experiment.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Candidate {
     /// The engine's name.
     pub engine: String,
@@ -67,28 +74,6 @@ impl Candidate {
     pub fn precision(&self) -> &'static str {
         Quantity::parse(&self.quantity).map_or("f64", Quantity::precision)
     }
-
-    /// As a parameter of the cell.
-    pub fn to_params(&self) -> serde_json::Value {
-        let Self { engine, version, quantity, method, control, estimate } = self;
-        json!({"engine": engine, "version": version, "quantity": quantity, "method": method, "control": control, "estimate": estimate})
-    }
-
-    /// The candidates of an experiment's cell, in the order of its samples.
-    pub fn of(cell: &Cell) -> Vec<Self> {
-        let text = |candidate: &serde_json::Value, key: &str| candidate[key].as_str().unwrap_or_default().to_owned();
-        let candidates = cell.params["candidates"].as_array().into_iter().flatten();
-        candidates
-            .map(|candidate| Self {
-                engine: text(candidate, "engine"),
-                version: text(candidate, "version"),
-                quantity: text(candidate, "quantity"),
-                method: text(candidate, "method"),
-                control: candidate["control"] == true,
-                estimate: candidate["estimate"] == true,
-            })
-            .collect()
-    }
 }
 
 /// The raw samples of every experiment as lines of JSON. Each has cell, robot, quantity, cache regime, candidate, and calls of a block.
@@ -96,12 +81,13 @@ impl Candidate {
 pub(super) fn lines(finished: &[Finished]) -> String {
     let mut text = String::new();
     for (cell, outcome) in finished {
-        let Some(samples) = outcome_samples(cell, outcome) else { continue };
-        for (which, candidate) in Candidate::of(cell).iter().enumerate() {
+        let Some(Paired { cache, candidates, .. }) = Paired::of(cell) else { continue };
+        let Some(samples) = Samples::of_outcome(outcome, candidates.len()) else { continue };
+        for (which, candidate) in candidates.iter().enumerate() {
             // A tenth of a picosecond is far below the resolution of a clock; the outcomes keep every bit.
             let ns: Vec<Option<f64>> = samples.of(which).iter().map(|ns| ns.is_finite().then(|| (ns * 1e4).round() / 1e4)).collect();
             let line = json!({
-                "cell": cell.id(), "model": cell.robot, "quantity": candidate.quantity, "cache": cell.params["cache"],
+                "cell": cell.id(), "model": cell.robot, "quantity": candidate.quantity, "cache": cache,
                 "engine": candidate.engine, "method": candidate.method, "control": candidate.control, "estimate": candidate.estimate,
                 "calls": samples.calls[which], "ns": ns,
             });
@@ -110,14 +96,6 @@ pub(super) fn lines(finished: &[Finished]) -> String {
         }
     }
     text
-}
-
-/// The samples of a finished experiment; `None` of any other cell.
-pub(super) fn outcome_samples(cell: &Cell, outcome: &Outcome) -> Option<Samples> {
-    if cell.params["what"] != super::EXPERIMENT {
-        return None;
-    }
-    Samples::from_values(outcome.values()?).filter(|samples| samples.calls.len() == Candidate::of(cell).len())
 }
 
 #[cfg(test)]

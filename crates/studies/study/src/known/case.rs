@@ -1,8 +1,11 @@
 //! A case: a question with a known answer, and how its numbers are judged.
 
-use featherbench_bench::{Cell, Context, NoAnswer, OWN, Outcome, hash};
-use featherbench_results::{Relation, Row, Verdict, canonical_json};
-use serde_json::{Value, json};
+use crate::{case_row, unanswered};
+use featherbench_bench::{Cell, Context, NoAnswer, OWN, Outcome, params};
+use featherbench_results::{Relation, Row, Verdict};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 /// A question with a known answer.
 pub struct Case {
@@ -67,21 +70,23 @@ pub fn failed(error: impl std::fmt::Display) -> NoAnswer {
     NoAnswer::Failed(error.to_string())
 }
 
+/// The parameters of a cell.
+#[derive(Serialize, Deserialize)]
+struct Params<C> {
+    case: C,
+    seed: u64,
+}
+
+/// What defines the case of a row; `None` if that is something else.
+pub fn defined_by<C: DeserializeOwned>(row: &Row) -> Option<C> {
+    params::of_row(row).map(|params: Params<C>| params.case)
+}
+
 impl Case {
     pub(super) fn cell(&self, study: &str, context: &Context) -> Option<Cell> {
         let identity = context.engine(OWN)?.identity();
-        let params = json!({"case": self.params, "seed": context.seed});
-        Some(Cell {
-            study: study.into(),
-            robot: self.name.clone(),
-            robot_hash: hash::of(canonical_json(&params).as_bytes()),
-            params,
-            engine: identity.name.clone(),
-            version: identity.version.clone(),
-            method: self.method.clone(),
-            quantity: self.quantity.into(),
-            scalar: "f64".into(),
-        })
+        let params = Params { case: &self.params, seed: context.seed };
+        Some(Cell::of_case(study, &self.name, (&identity.name, &identity.version), self.quantity, &self.method, params))
     }
 
     pub(super) fn is_of(&self, cell: &Cell) -> bool {
@@ -90,23 +95,11 @@ impl Case {
 
     /// Its rows, judged: one for each number, or one that says why there are none.
     pub fn rows(&self, context: &Context, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
-        let blank = Row {
-            cell: cell.id(),
-            study: cell.study.clone(),
-            family: self.name.clone(),
-            params: canonical_json(&cell.params),
-            engine: cell.engine.clone(),
-            engine_version: cell.version.clone(),
-            method: self.method.clone(),
-            precision: cell.scalar.clone(),
-            quantity: self.quantity.into(),
-            ..Row::default()
-        };
+        let blank = case_row(cell);
         let values = match outcome.answer() {
             Ok(values) => values,
             // A solver that is not for such a problem says so, and nothing is due.
-            Err(NoAnswer::NotOffered(reason)) => return vec![blank.without_value(Verdict::Info, reason)],
-            Err(no_answer) => return vec![blank.without_value(Verdict::Error, no_answer.to_string())],
+            Err(no_answer) => return vec![unanswered(blank, &no_answer, Verdict::Info)],
         };
         if values.is_empty() || values.len() > self.numbers.len() {
             return vec![blank.without_value(Verdict::Error, format!("{} numbers came, {} are due", values.len(), self.numbers.len()))];

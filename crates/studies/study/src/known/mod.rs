@@ -8,11 +8,11 @@
 mod case;
 mod table;
 
-pub use case::{Case, Evaluate, Judged, Number, count, error, failed, told};
+pub use case::{Case, Evaluate, Judged, Number, count, defined_by, error, failed, told};
 pub use featherbench_spatial::{larger, largest};
 pub use table::{beside, passed, table};
 
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Study};
+use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, Outcome, Study};
 use featherbench_results::Row;
 
 /// A study of cases with known answers.
@@ -42,11 +42,9 @@ impl Study for KnownAnswers {
         self.cases.iter().filter_map(|case| case.cell(self.name, context)).collect()
     }
 
-    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        match self.case(cell) {
-            Some(case) => (case.evaluate)(context.seed).into(),
-            None => Outcome::NoAnswer(NoAnswer::Failed("there is no case of this cell".into())),
-        }
+    fn evaluate(&self, asked: &Asked) -> Outcome {
+        let case = self.case(asked.cell).ok_or_else(|| NoAnswer::Failed("there is no case of this cell".into()));
+        case.and_then(|case| (case.evaluate)(asked.context.seed)).into()
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {

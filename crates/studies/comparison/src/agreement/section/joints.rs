@@ -5,6 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use featherbench_bench::params;
 use featherbench_report::map::{inside, outside};
 use featherbench_report::numbers::{decades, larger, listed, short};
 use featherbench_report::{Overview, Tally, engine as linked, labels, swatch, worst_first};
@@ -13,6 +14,7 @@ use maud::{Markup, html};
 use serde::Serialize;
 
 use super::{PAIRWISE, STUDY};
+use crate::agreement::Params;
 
 /// The prefix of these robots' names.
 const PREFIX: &str = "joints-";
@@ -121,8 +123,8 @@ impl<'a> Shown<'a> {
         let mut parts = row.robot.strip_prefix(PREFIX)?.split('-');
         let kind = parts.next()?;
         let armature = parts.any(|part| part == "armature");
-        let params: serde_json::Value = serde_json::from_str(&row.params).ok()?;
-        let held = params["joints"].as_array()?.iter().any(|joint| joint == kind);
+        let params: Params = params::of_row(row)?;
+        let held = params.joints.iter().any(|joint| joint == kind);
         let rank = TYPES.iter().position(|&known| known == kind).unwrap_or(TYPES.len());
         held.then_some(Self { rank, kind, armature })
     }

@@ -1,5 +1,7 @@
 //! Quantiles of errors by engine, method and level of an axis, from the rows.
 
+use crate::accuracy::Params;
+use featherbench_bench::params;
 use featherbench_report::{EVERYONE, Overview};
 use featherbench_results::{Row, Verdict};
 use std::collections::BTreeMap;
@@ -135,16 +137,15 @@ impl<'a> Maps<'a> {
 
 /// The levels of a row's robot: those at which it was drawn, and its depth up to the next power of two.
 fn levels(row: &Row) -> Vec<Level> {
-    let params: serde_json::Value = serde_json::from_str(&row.params).unwrap_or_default();
-    let drawn = params.get("axes").and_then(serde_json::Value::as_object).into_iter().flatten();
-    let drawn = drawn.map(|(axis, level)| {
+    let params: Params = params::of_row(row).unwrap_or_default();
+    let drawn = params.axes.into_iter().map(|(axis, level)| {
         let number = level.as_f64();
         let name = match (level.as_str(), number) {
             (Some(word), _) => word.to_owned(),
             (None, Some(number)) => named(number),
             (None, None) => level.to_string(),
         };
-        Level { axis: axis.clone(), name, number }
+        Level { axis, name, number }
     });
     let depth = row.depth.map(u64::next_power_of_two).map(|depth| Level {
         axis: DEPTH.into(),

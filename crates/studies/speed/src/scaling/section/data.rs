@@ -1,10 +1,11 @@
 //! What the section shows, from the rows of the studies `scaling` and `growth`.
 
 use super::others::{self, Other};
-use crate::scaling::others::WHAT;
+use crate::growth::OfLine;
+use crate::scaling::What;
+use featherbench_bench::params;
 use featherbench_report::Overview;
 use featherbench_results::{Row, Verdict};
-use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// The study of exact rows.
@@ -90,7 +91,7 @@ pub(super) struct Beside<'a> {
     /// With the number of threads behind it, if it uses several.
     pub(super) method: &'a str,
     pub(super) over: &'a str,
-    pub(super) threads: Option<u64>,
+    pub(super) threads: Option<usize>,
     /// (robot, dofs, ratio of times).
     pub(super) time: Vec<(usize, u64, f64)>,
     /// Dofs where both take the same time.
@@ -156,27 +157,24 @@ impl<'a> Data<'a> {
         let mut data = Self::default();
         let mut trees: Vec<Tree> = Vec::new();
         for row in rows.iter().filter(|row| row.study == SCALING) {
-            let params: Value = serde_json::from_str(&row.params).unwrap_or_default();
-            let robot = overview.robot(&row.robot);
-            match (params["what"].as_str().unwrap_or_default(), robot) {
-                ("counts" | "fill_in" | "factors", Some(robot)) => {
+            let (what, robot): (Option<What>, _) = (params::of_row(row), overview.robot(&row.robot));
+            let Some(what) = what else { continue };
+            match (&what, robot) {
+                (What::Counts { .. } | What::FillIn | What::Factors, Some(robot)) => {
                     let place = trees.iter().position(|tree| tree.robot == robot).unwrap_or_else(|| {
                         trees.push(Tree { robot, ..Tree::default() });
                         trees.len() - 1
                     });
-                    trees[place].add(row, params["route"].as_str());
+                    trees[place].add(row, what);
                 }
-                (WHAT, Some(robot)) => others::add(&mut data.others, robot, row),
-                ("dynamics", Some(robot)) => data.add_error(robot, row),
-                ("parallel", Some(robot)) => data.add_share(robot, row),
-                ("work", Some(robot)) => {
+                (What::Others, Some(robot)) => others::add(&mut data.others, robot, row),
+                (What::Dynamics, Some(robot)) => data.add_error(robot, row),
+                (What::Parallel, Some(robot)) => data.add_share(robot, row),
+                (What::Work { .. }, Some(robot)) => {
                     let ratios = data.ratios_of(&row.family);
                     ratios.work.extend(row.value.map(|value| (robot, row.nv.unwrap_or(0), value)));
                 }
-                ("crossover", _) => {
-                    let at = params["lanes"].as_f64().zip(row.value);
-                    data.ratios_of(&row.family).predicted.extend(at);
-                }
+                (What::Crossover { lanes }, _) => data.ratios_of(&row.family).predicted.extend(row.value.map(|value| (*lanes, value))),
                 _ => {}
             }
         }
@@ -247,8 +245,7 @@ impl<'a> Data<'a> {
     fn beside_of(&mut self, row: &'a Row) -> &mut Beside<'a> {
         let key = (row.family.as_str(), row.quantity.as_str(), row.method.as_str());
         let place = self.beside.iter().position(|one| (one.line, one.quantity, one.method) == key).unwrap_or_else(|| {
-            let params: Value = serde_json::from_str(&row.params).unwrap_or_default();
-            let ((line, quantity, method), threads) = (key, params["threads"].as_u64());
+            let ((line, quantity, method), threads) = (key, params::of_row(row).and_then(|params: OfLine| params.threads));
             self.beside.push(Beside { line, quantity, method, over: &row.reference, threads, time: Vec::new(), crossing: None });
             self.beside.len() - 1
         });
@@ -328,10 +325,10 @@ impl<'a> Data<'a> {
 }
 
 impl<'a> Tree<'a> {
-    fn add(&mut self, row: &'a Row, route: Option<&str>) {
+    fn add(&mut self, row: &'a Row, what: What) {
         self.size = row.nv.unwrap_or(self.size);
-        if let Some(route) = route {
-            self.route = route.to_owned();
+        if let What::Counts { route: Some(route) } = what {
+            self.route = route;
         }
         match (row.metric.as_str(), row.value) {
             ("fill_in", Some(value)) => drop(self.fill.insert(&row.method, value)),

@@ -45,21 +45,21 @@ fn groups<'a, 'b>(all: &'b [Beside<'a>]) -> Vec<Vec<&'b Beside<'a>>> {
 }
 
 /// The numbers of threads, ascending; a serial method has one.
-fn threads(all: &[Beside]) -> Vec<u64> {
-    let mut threads: Vec<u64> = all.iter().map(|one| one.threads.unwrap_or(1)).collect();
+fn threads(all: &[Beside]) -> Vec<usize> {
+    let mut threads: Vec<usize> = all.iter().map(|one| one.threads.unwrap_or(1)).collect();
     threads.sort_unstable();
     threads.dedup();
     threads
 }
 
-fn cores_of(threads: u64) -> String {
+fn cores_of(threads: usize) -> String {
     if threads == 1 { "ratio, 1 thread".to_owned() } else { format!("{threads} threads") }
 }
 
-fn beside(group: &[&Beside], threads: &[u64]) -> Markup {
+fn beside(group: &[&Beside], threads: &[usize]) -> Markup {
     let Some(most) = group.iter().max_by_key(|one| one.threads) else { return Markup::default() };
     let largest = most.time.last().map(|(_, size, _)| *size);
-    let ratio = |threads: u64| {
+    let ratio = |threads: usize| {
         let one = group.iter().find(|one| one.threads.unwrap_or(1) == threads)?;
         one.time.iter().find(|(_, size, _)| Some(*size) == largest).map(|(_, _, ratio)| short(*ratio))
     };

@@ -2,14 +2,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use featherbench_bench::params;
 use featherbench_report::fit::{Fit, power_law};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Part, labels};
 use featherbench_results::Row;
 use maud::{Markup, html};
-use serde::Deserialize;
 
 use super::{STUDY, drawings};
+use crate::timing::rows::RowParams;
 
 /// Times of one algorithm on one family.
 #[derive(Debug)]
@@ -59,13 +60,6 @@ pub struct TimePoint {
     pub estimated: bool,
 }
 
-/// The deciles of a time's blocks, from its parameters.
-#[derive(Default, Deserialize)]
-struct Deciles {
-    p10: Option<f64>,
-    p90: Option<f64>,
-}
-
 /// Collects a run's rows.
 pub fn lines<'a>(overview: &Overview<'a>, rows: &'a [Row]) -> Vec<TimeLine<'a>> {
     let mut lines: BTreeMap<[&str; 6], Vec<TimePoint>> = BTreeMap::new();
@@ -73,7 +67,7 @@ pub fn lines<'a>(overview: &Overview<'a>, rows: &'a [Row]) -> Vec<TimeLine<'a>> 
         let (Some(robot), Some(ns)) = (overview.robot(&row.robot), row.value) else { continue };
         let Some(size) = overview.robots[robot].nv.filter(|&size| size > 0) else { continue };
         let joints = overview.robots[robot].bodies.filter(|&bodies| bodies > 0).unwrap_or(size);
-        let params: Deciles = serde_json::from_str(&row.params).unwrap_or_default();
+        let params: RowParams = params::of_row(row).unwrap_or_default();
         let (valid, estimated, low, high) = (row.valid, row.estimated, row.ci_low, row.ci_high);
         let point = TimePoint { robot, size, joints, ns, p10: params.p10, p90: params.p90, low, high, valid, estimated };
         lines.entry([&row.engine, &row.quantity, &row.method, &row.precision, &row.family, &row.cache]).or_default().push(point);
