@@ -37,7 +37,7 @@ mod reduced;
 mod support;
 mod written;
 
-use featherbench_bench::{Engine, FileBase, FileFormat, RobotFile};
+use featherbench_bench::{Engine, FileBase, FileContent, FileFormat, RobotFile};
 use featherbench_comparison::import::{Cause, Comparison, Difference, Field};
 use featherbench_engines::{Limits, Oracle};
 use featherbench_lesson::Language;
@@ -393,7 +393,7 @@ fn one_file_is_another() -> Outcome {
     let write = |name: &str, text: String| {
         let path = folder.path().join(name);
         std::fs::write(&path, text).unwrap();
-        RobotFile::open(&path, FileFormat::Urdf, FileBase::Fixed).unwrap()
+        FileContent::read(&path, FileFormat::Urdf).unwrap().file(FileBase::Fixed).unwrap()
     };
     let honest = write("honest.urdf", pendulum("1", "0 1 0", "0.3 0 0"));
     let (ours, _) = featherbench_formats::urdf::read(&honest.path, &featherbench_formats::urdf::Options::default()).unwrap();
