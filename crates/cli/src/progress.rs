@@ -6,6 +6,7 @@ use featherbench_bench::{Cell, Lost, Outcome};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 /// Shows a run on standard error.
 pub struct Bar {
@@ -57,4 +58,18 @@ impl Progress for Bar {
     fn end(&self) {
         self.with(|bar| bar.finish_and_clear());
     }
+}
+
+/// Progress of something long; without a terminal, `announced` is printed once.
+pub fn spinner(announced: &str) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        tell!("{announced}");
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new_spinner();
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {wide_msg}") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(120));
+    bar
 }

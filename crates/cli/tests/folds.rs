@@ -3,11 +3,12 @@
 //! The test searches the sources for folds with `max` or `min` of floats. The right functions are `larger` and `smaller` of
 //! `featherbench_spatial`, and `featherbench_bench::measure::worst` for errors.
 
-use std::path::{Path, PathBuf};
+use crate::direction::sources;
+use std::path::Path;
 
 /// Folds that cannot meet a NaN, by file and a part of the line, and why.
 const HARMLESS: [(&str, &str, &str); 28] = [
-    ("crates/cli/src/robots/robot_file.rs", "deepest.max(depth", "a count"),
+    ("crates/harness/bench/src/robot/recognised.rs", "deepest.max(depth", "a count"),
     ("crates/cli/tests/outside/native.rs", "clocked.min(", "durations"),
     ("crates/cli/tests/outside/native.rs", "asked.min(", "durations"),
     ("crates/mechanics/dynamics/src/tree_sparse.rs", "rows[parent].end.max(", "indices"),
@@ -39,24 +40,6 @@ const HARMLESS: [(&str, &str, &str); 28] = [
     ("crates/studies/comparison/src/reproductions/mod.rs", "fold(f64::max)", "the closure that calls it keeps what is no number"),
 ];
 
-/// Every Rust source of the workspace.
-fn sources() -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let (mut found, mut folders) = (Vec::new(), vec![root.join("crates")]);
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(&folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
-                found.push(path.strip_prefix(&root).unwrap().to_owned());
-            }
-        }
-    }
-    found.sort();
-    found
-}
-
 /// The expression that ends before this place: names, fields, calls and indices without spaces.
 fn expression_before(text: &str) -> &str {
     let start = text.rfind(|c: char| !(c.is_alphanumeric() || "_.*[]:+".contains(c))).map_or(0, |at| at + 1);
@@ -85,15 +68,15 @@ fn loses(line: &str) -> bool {
 
 #[test]
 fn no_fold_loses_a_nan() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let (mut searched, mut found, mut harmless) = (0, Vec::new(), [0; HARMLESS.len()]);
-    for path in sources() {
+    for path in sources(Path::new("..")) {
         // This file contains the forbidden forms.
         if path.ends_with("cli/tests/folds.rs") {
             continue;
         }
         searched += 1;
-        let text = std::fs::read_to_string(root.join(&path)).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let path = path.strip_prefix("..").map(|path| Path::new("crates").join(path)).unwrap();
         for (number, line) in text.lines().enumerate().filter(|(_, line)| loses(line)) {
             let mut known =
                 HARMLESS.iter().zip(&mut harmless).filter(|((file, part, _), _)| path == Path::new(file) && line.contains(part)).peekable();

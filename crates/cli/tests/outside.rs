@@ -37,7 +37,7 @@ mod reduced;
 mod support;
 mod written;
 
-use featherbench_bench::{Engine, FileBase, FileFormat, RobotFile};
+use featherbench_bench::{Engine, FileBase, FileContent, FileFormat, RobotFile};
 use featherbench_comparison::import::{Cause, Comparison, Difference, Field};
 use featherbench_engines::{Limits, Oracle};
 use featherbench_lesson::Language;
@@ -49,8 +49,10 @@ use support::{Ended, Sandbox, project};
 type Test = fn() -> Outcome;
 
 /// The result of a test.
-enum Outcome {
-    Passed,
+type Outcome = Result<(), Unpassed>;
+
+/// Why a test has not passed.
+enum Unpassed {
     Failed(String),
     Skipped(String),
     /// Not run and not required here: it takes minutes of compiling, in the nightly run.
@@ -127,20 +129,20 @@ fn main() -> ExitCode {
     let chosen = |name: &str| words.is_empty() || words.iter().any(|word| name.contains(word));
     for (name, test) in tests.iter().filter(|(name, _)| chosen(name)) {
         // A failed assertion of a test is that test's failure.
-        match std::panic::catch_unwind(test).unwrap_or_else(|_| Outcome::Failed("see above".into())) {
-            Outcome::Passed => {
+        match std::panic::catch_unwind(test).unwrap_or_else(|_| Err(Unpassed::Failed("see above".into()))) {
+            Ok(()) => {
                 println!("passed: {name}");
                 passed += 1;
             }
-            Outcome::Failed(reason) => {
+            Err(Unpassed::Failed(reason)) => {
                 println!("failed: {name}: {reason}");
                 failed += 1;
             }
-            Outcome::Skipped(reason) => {
+            Err(Unpassed::Skipped(reason)) => {
                 println!("skipped: {name}: {reason}");
                 skipped += 1;
             }
-            Outcome::Nightly(reason) => {
+            Err(Unpassed::Nightly(reason)) => {
                 println!("left to the night: {name}: {reason}");
                 failed += usize::from(std::env::var_os("FEATHERBENCH_NIGHTLY").is_some());
             }
@@ -157,18 +159,18 @@ fn exists(program: &str) -> bool {
 
 fn checked(command: &mut Command) -> Outcome {
     let ended = Ended::new(command.output().unwrap());
-    if ended.code == Some(0) { Outcome::Passed } else { Outcome::Failed(format!("{}\n{}", ended.output, ended.errors)) }
+    if ended.code == Some(0) { Ok(()) } else { Err(Unpassed::Failed(format!("{}\n{}", ended.output, ended.errors))) }
 }
 
-fn installed_python() -> Result<std::path::PathBuf, Outcome> {
+fn installed_python() -> Result<std::path::PathBuf, Unpassed> {
     let python = project().join("target/oracles/venv/bin/python");
     let installed = python.exists() && project().join("target/oracles/installed").exists();
-    if installed { Ok(python) } else { Err(Outcome::Skipped("the engines are not installed (`featherbench oracles install`)".into())) }
+    if installed { Ok(python) } else { Err(Unpassed::Skipped("the engines are not installed (`featherbench oracles install`)".into())) }
 }
 
 fn missing_wheel() -> Outcome {
     if !exists("python3") {
-        return Outcome::Skipped("there is no python3".into());
+        return Err(Unpassed::Skipped("there is no python3".into()));
     }
     let sandbox = Sandbox::new();
     // An empty index: as on a machine whose index does not have the wheel. uv is not on the path, so that pip is used.
@@ -181,12 +183,12 @@ fn missing_wheel() -> Outcome {
     install(&["oracles", "install"]).expect(3, &words);
     install(&["oracles", "install"]).expect(3, &words);
     install(&["run", "--suite", "smoke", "--live"]).expect(3, &words);
-    Outcome::Passed
+    Ok(())
 }
 
 /// A test that needs the engines' Python.
 fn with_engines(test: fn(&Path) -> Outcome) -> Outcome {
-    installed_python().map_or_else(|skipped| skipped, |python| test(&python))
+    test(&installed_python()?)
 }
 
 /// The command of a module of the oracles' package.
@@ -198,13 +200,10 @@ fn oracle_command(python: &Path, module: &str) -> Vec<OsString> {
 
 /// Runs tests of the oracles by pytest.
 fn pytest(arguments: &[&str]) -> Outcome {
-    let python = match installed_python() {
-        Ok(python) => python,
-        Err(skipped) => return skipped,
-    };
+    let python = installed_python()?;
     let there = Command::new(&python).args(["-c", "import pytest"]).output().unwrap().status.success();
     if !there {
-        return Outcome::Skipped("pytest is not installed (`ci/python-tools`)".into());
+        return Err(Unpassed::Skipped("pytest is not installed (`ci/python-tools`)".into()));
     }
     checked(Command::new(&python).current_dir(project().join("oracles")).args(["-m", "pytest", "-q"]).args(arguments))
 }
@@ -250,10 +249,7 @@ fn copy_python(from: &Path, to: &Path) {
 }
 
 fn own_oracles() -> Outcome {
-    let python = match installed_python() {
-        Ok(python) => python,
-        Err(skipped) => return skipped,
-    };
+    let python = installed_python()?;
     for (name, code) in [("chain", 0), ("mujoco", 0), ("drake", 0), ("pinocchio", 1)] {
         let ended = conformance(&by_hand(&python, &project().join("oracles"), name), None);
         ended.expect(
@@ -269,27 +265,21 @@ fn own_oracles() -> Outcome {
             },
         );
     }
-    Outcome::Passed
+    Ok(())
 }
 
 /// Friction in ten lines of Python keeps the protocol of a residual.
 fn python_residual() -> Outcome {
-    let python = match installed_python() {
-        Ok(python) => python,
-        Err(skipped) => return skipped,
-    };
+    let python = installed_python()?;
     let mut check = Command::new(env!("CARGO_BIN_EXE_featherbench"));
     check.current_dir(project()).args(["oracles", "check", "--all"]).arg(python).arg(project().join("oracles/friction.py"));
     Ended::new(check.output().unwrap()).expect(0, &["residual: 27 robots, the same for any acceleration", "conforms"]);
-    Outcome::Passed
+    Ok(())
 }
 
 /// Our own oracles with one conversion removed: the conformance test names it.
 fn forgetful_oracles() -> Outcome {
-    let python = match installed_python() {
-        Ok(python) => python,
-        Err(skipped) => return skipped,
-    };
+    let python = installed_python()?;
     let cases = [
         ("chain", " + rotor for", " for", "armature is left out"),
         ("chain", "-gravity * np.array", "gravity * np.array", "gravity has the wrong sign"),
@@ -336,14 +326,11 @@ fn forgetful_oracles() -> Outcome {
         conformance(&by_hand(&python, copy.path(), name), Some(copy.path())).expect(1, &[named]);
         std::fs::write(&path, text).unwrap();
     }
-    Outcome::Passed
+    Ok(())
 }
 
 fn small_oracle() -> Outcome {
-    let python = match installed_python() {
-        Ok(python) => python,
-        Err(skipped) => return skipped,
-    };
+    let python = installed_python()?;
     let sandbox = Sandbox::new();
     let engine = format!("small='{}' oracles/chain.py", python.display());
     let only = "agreement/chain-planar-2/.*/(readback|id|mass_matrix)/.*";
@@ -356,13 +343,11 @@ fn small_oracle() -> Outcome {
             .count();
         assert!(judged > 0, "no row of {quantity} passes");
     }
-    Outcome::Passed
+    Ok(())
 }
 
 fn live_run() -> Outcome {
-    if let Err(skipped) = installed_python() {
-        return skipped;
-    }
+    installed_python()?;
     let folder = tempfile::tempdir().unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_featherbench"));
     let run =
@@ -385,15 +370,12 @@ fn pendulum(mass: &str, axis: &str, inertial: &str) -> String {
 
 /// Each engine imports its own file. One file has another number, and the imports of all others agree.
 fn one_file_is_another() -> Outcome {
-    let python = match installed_python() {
-        Ok(python) => python,
-        Err(skipped) => return skipped,
-    };
+    let python = installed_python()?;
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: String| {
         let path = folder.path().join(name);
         std::fs::write(&path, text).unwrap();
-        RobotFile::open(&path, FileFormat::Urdf, FileBase::Fixed).unwrap()
+        FileContent::read(&path, FileFormat::Urdf).unwrap().file(FileBase::Fixed).unwrap()
     };
     let honest = write("honest.urdf", pendulum("1", "0 1 0", "0.3 0 0"));
     let (ours, _) = featherbench_formats::urdf::read(&honest.path, &featherbench_formats::urdf::Options::default()).unwrap();
@@ -417,13 +399,13 @@ fn one_file_is_another() -> Outcome {
             assert_eq!(named, [("rod", *field, *cause)], "{engine}: {}", file.path.display());
         }
     }
-    Outcome::Passed
+    Ok(())
 }
 
 fn browser() -> Outcome {
     for program in ["python3", "chromium", "chromedriver"] {
         if !exists(program) {
-            return Outcome::Skipped(format!("there is no {program}"));
+            return Err(Unpassed::Skipped(format!("there is no {program}")));
         }
     }
     let sandbox = Sandbox::new();

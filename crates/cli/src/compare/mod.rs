@@ -12,18 +12,18 @@ use crate::message::{say, tell};
 use crate::oracles;
 use crate::oracles::engines::{self, Asked};
 use crate::progress::Bar;
-use crate::robots;
-use crate::robots::robot_file;
 use crate::root::Root;
 use crate::run::About;
 use crate::{message, report, run};
-use ::featherbench_results::{ModelOrigin, Verdict};
+use ::featherbench_results::Verdict;
 use featherbench_bench::run::{Opening, Run};
-use featherbench_bench::{Cell, Context, Engine, Engines, FileFormat, OWN, Robot, RobotFile, hash, provenance};
+use featherbench_bench::{
+    Cell, Context, Engine, Engines, FileBase, FileContent, FileFormat, OWN, Robot, RobotFile, RobotSource, hash, provenance,
+};
 use featherbench_comparison::import::answers;
 use featherbench_comparison::{Agreement, Import};
 use featherbench_engines::Limits;
-use featherbench_model::Warning;
+use std::path::Path;
 use std::time::{Duration, Instant, SystemTime};
 
 /// States per robot, besides the keyframes of its file: one of each case.
@@ -43,12 +43,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let compiler = described.compiler(FileFormat::Mjcf).map_or("", |engine| engine.name.as_str());
     // Bad files are told before anything is installed or started, and the others are compared.
     let mut bad: Vec<Fail> = Vec::new();
-    let opened: Vec<RobotFile> = args.files.iter().filter_map(|file| kept(robot_file::open(file, args.floating), &mut bad)).collect();
-    // Our own reading of a URDF needs no engine.
-    let read = opened
-        .into_iter()
-        .map(|file| if file.format == FileFormat::Urdf { read_file(file, None).map(Some) } else { Ok(Some(Source::Unread(file))) });
-    let files: Vec<Source> = read.filter_map(|robot| kept(robot, &mut bad).flatten()).collect();
+    let files: Vec<Source> = args.files.iter().filter_map(|path| kept(Source::open(path, args.floating), &mut bad)).collect();
     if files.is_empty() {
         return Err(ended(bad));
     }
@@ -70,12 +65,11 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     for file in files {
         let read = match file {
             Source::Unread(file) => {
-                read_file(file, opened.engines.iter().find(|engine| engine.identity().name == compiler).map(AsRef::as_ref))
+                compiled(file, opened.engines.iter().find(|engine| engine.identity().name == compiler).map(AsRef::as_ref))
             }
-            read => Ok(read),
+            Source::Read(read) => Ok(*read),
         };
-        let Some(Source::Read { robot, remarks: about }) = kept(read, &mut bad) else { continue };
-        let robot = *robot;
+        let Some((robot, about)) = kept(read, &mut bad) else { continue };
         let twice = robots.iter().filter(|known| known.name == robot.name || known.name.starts_with(&format!("{} (", robot.name)));
         let count = twice.count();
         let name = if count == 0 { robot.name.clone() } else { format!("{} ({})", robot.name, count + 1) };
@@ -151,19 +145,34 @@ fn ended(mut bad: Vec<Fail>) -> Fail {
     }
 }
 
+/// A robot with the remarks on its file.
+type Read = (Robot, Vec<String>);
+
 /// A robot on its way to being compared.
 enum Source {
     /// Its reference reading needs MuJoCo.
     Unread(RobotFile),
-    /// The reference reading, and what it leaves out that a user should know.
-    Read { robot: Box<Robot>, remarks: Vec<String> },
+    /// Our own reading of a URDF needs no engine.
+    Read(Box<Read>),
 }
 
 impl Source {
+    fn open(path: &Path, floating: bool) -> Result<Self, Fail> {
+        let content = FileContent::recognised(path)?;
+        Ok(match content.format {
+            FileFormat::Urdf => {
+                let base = if floating { FileBase::Free } else { FileBase::Fixed };
+                Self::Read(Box::new(read(RobotSource::urdf(&content, base)?)?))
+            }
+            // An MJCF says itself what floats.
+            FileFormat::Mjcf => Self::Unread(content.file(FileBase::Fixed)?),
+        })
+    }
+
     fn hash(&self) -> &str {
         match self {
             Self::Unread(file) => &file.hash,
-            Self::Read { robot, .. } => &robot.hash,
+            Self::Read(read) => &read.0.hash,
         }
     }
 }
@@ -186,28 +195,19 @@ fn hashes(files: &[Source]) -> String {
     hash::of_parts(&files.iter().map(|file| file.hash().as_bytes()).collect::<Vec<_>>())
 }
 
-/// The reference reading of a file, at its states; an MJCF file needs its compiler.
-fn read_file(mut file: RobotFile, compiler: Option<&dyn Engine>) -> Result<Source, Fail> {
-    let (description, warnings, keyframes, remarks) = match file.format {
-        FileFormat::Urdf => {
-            let (description, notes) = robots::read_urdf(&file)?;
-            file.links = robots::links(&file)?;
-            let remarks = notes.iter().map(ToString::to_string).filter(|note| note.contains("mimic")).collect();
-            (description, robots::normalised(notes), Vec::new(), remarks)
-        }
-        FileFormat::Mjcf => {
-            let message =
-                || format!("{}: MuJoCo's compiler is the reference of MJCF files; do not leave it out of --engines", file.path.display());
-            let reading = robots::read_mjcf(&file, compiler.ok_or_else(|| Fail::input(message()))?)?;
-            let remarks = reading.notes.iter().filter(|note| note.cause == "free_armature");
-            let remarks = remarks.map(|note| format!("joint '{}': {}", note.about.as_deref().unwrap_or_default(), note.text));
-            let loops = reading.description.warnings().into_iter().filter(|warning| matches!(warning, Warning::Loops { .. }));
-            let remarks = remarks.chain(loops.map(|warning| warning.to_string())).collect();
-            (reading.description, Vec::new(), reading.keyframes, remarks)
-        }
-    };
-    let malformed = |error: &dyn std::error::Error| Fail::input(format!("{}: {error}", file.path.display()));
-    let robot = Robot::new(&description, "file", ModelOrigin::Robot, STATES, SEED).map_err(|error| malformed(&error))?;
-    let robot = robot.with_warnings(warnings).with_keyframes(&keyframes, SEED).map_err(|error| malformed(&error))?;
-    Ok(Source::Read { robot: Box::new(robot.from_file(file)), remarks })
+/// The reference reading of an MJCF file.
+fn compiled(file: RobotFile, compiler: Option<&dyn Engine>) -> Result<Read, Fail> {
+    let compiler = compiler.ok_or_else(|| {
+        let path = file.path.display();
+        Fail::input(format!("{path}: MuJoCo's compiler is the reference of MJCF files; do not leave it out of --engines"))
+    })?;
+    read(RobotSource::mjcf(file, compiler)?)
+}
+
+/// A robot at its states, with the remarks on its file.
+fn read(source: RobotSource) -> Result<Read, Fail> {
+    let path = source.file.as_ref().map(|file| file.path.display().to_string()).unwrap_or_default();
+    let malformed = |error: &dyn std::error::Error| Fail::input(format!("{path}: {error}"));
+    let robot = Robot::new(&source.description, "file", source.origin, STATES, SEED).map_err(|error| malformed(&error))?;
+    Ok((robot.with_source(&source, SEED).map_err(|error| malformed(&error))?, source.remarks))
 }

@@ -4,7 +4,7 @@
 
 use crate::fail::Fail;
 use crate::message::tell;
-use crate::oracles::spinner;
+use crate::progress::spinner;
 use crate::root::Root;
 use featherbench_bench::{DescribedEngine, Engine, hash};
 use featherbench_engines::{Limits, Oracle, native};

@@ -2,7 +2,7 @@
 
 use crate::fail::Fail;
 use crate::oracles::package;
-use crate::oracles::{pins, spinner};
+use crate::progress::spinner;
 use crate::root::Root;
 use featherbench_bench::{DescribedEngine, Engines, hash};
 use indicatif::ProgressBar;
@@ -88,6 +88,13 @@ impl<'a> Environment<'a> {
         let last = errors.iter().rev().find(|line| line.to_lowercase().contains("error")).or(errors.last()).cloned().unwrap_or_default();
         Err(missing(format!("`{program} {}` failed ({status}): {last}", shown.join(" "))))
     }
+}
+
+/// The lines of a requirements file that ask for something.
+pub fn pins(path: &Path) -> Result<Vec<String>, Fail> {
+    let text = std::fs::read_to_string(path).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?;
+    let lines = text.lines().map(|line| line.split(" #").next().unwrap_or_default().trim());
+    Ok(lines.filter(|line| !line.is_empty() && !line.starts_with('#')).map(str::to_owned).collect())
 }
 
 /// An engine in Python with an environment of its own, so that the installation of the other engines is no larger.

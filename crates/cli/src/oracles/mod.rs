@@ -14,17 +14,16 @@ use crate::args::InstallArgs;
 use crate::fail::Fail;
 use crate::message::{say, tell};
 use crate::oracles::compiled::Compiled;
-use crate::oracles::environment::{Alone, Environment};
+use crate::oracles::environment::{Alone, Environment, pins};
+use crate::progress::spinner;
 use crate::root::Root;
 use featherbench_bench::alone::{Measured, Question};
 use featherbench_bench::{DescribedEngine, Engine, Engines, NoAnswer, OWN, Robot, Start};
 use featherbench_engines::{Limits, Oracle, alone};
-use indicatif::{ProgressBar, ProgressStyle};
 use std::ffi::OsString;
-use std::io::IsTerminal;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// What the oracles share.
 const SHARED: &str = "requirements.txt";
@@ -101,20 +100,6 @@ pub fn install(root: &Root) -> Result<PathBuf, Fail> {
     Ok(python)
 }
 
-/// Progress of something long; without a terminal, `announced` is printed once.
-pub fn spinner(announced: &str) -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        tell!("{announced}");
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new_spinner();
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {wide_msg}") {
-        bar.set_style(style);
-    }
-    bar.enable_steady_tick(Duration::from_millis(120));
-    bar
-}
-
 /// What an installation is known by: the hash of what it was asked for, in any order and whatever the comments.
 fn stamp(root: &Root) -> Result<String, Fail> {
     let mut environment = described(root)?.pins();
@@ -126,13 +111,6 @@ fn stamp(root: &Root) -> Result<String, Fail> {
         asked.join("\n")
     });
     Ok(featherbench_bench::hash::of_parts(&asked.each_ref().map(|asked| asked.as_bytes())))
-}
-
-/// The lines of a requirements file that ask for something.
-pub fn pins(path: &Path) -> Result<Vec<String>, Fail> {
-    let text = std::fs::read_to_string(path).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?;
-    let lines = text.lines().map(|line| line.split(" #").next().unwrap_or_default().trim());
-    Ok(lines.filter(|line| !line.is_empty() && !line.starts_with('#')).map(str::to_owned).collect())
 }
 
 /// Starts an engine's oracle, in the way that its description says. An engine that cargo builds is built if need be; the others must be

@@ -5,7 +5,8 @@
 
 use crate::fail::Fail;
 use crate::message::tell;
-use crate::oracles::{self, spinner};
+use crate::oracles;
+use crate::progress::spinner;
 use crate::root::Root;
 use featherbench_bench::{DescribedEngine, Engine, Engines, Identity, Library, Start, hash};
 use featherbench_engines::{Limits, Oracle, native};

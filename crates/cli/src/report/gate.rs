@@ -6,7 +6,7 @@ use crate::message::{self, say};
 use crate::report::ranges;
 use crate::robots;
 use crate::root::Root;
-use ::featherbench_results::{Expectation, GateKind, Properties, RobotInfo, Row, RunInfo, atomic_write};
+use ::featherbench_results::{Expectation, GateKind, Row, RunInfo, atomic_write};
 use featherbench_bench::{Counts, Suite, provenance};
 use featherbench_report::{Findings, forms, unmet};
 use std::path::Path;
@@ -46,7 +46,7 @@ pub fn gate(root: &Root, args: &GateArgs) -> Result<(), Fail> {
 /// Today's conditions on a run. Engines that were missing stay missing.
 fn conditions(root: &Root, suite: &Suite, folder: &Path, info: &RunInfo, records: &[Row]) -> Result<Vec<Expectation>, Fail> {
     let externals = info.engines.iter().filter(|engine| engine.build.contains_key(provenance::PROGRAM)).map(|engine| engine.name.as_str());
-    let gates = root.read_gates()?.with_external(&externals.collect::<Vec<_>>()).with_robots(properties(folder, info)?)?;
+    let gates = root.read_gates()?.with_external(&externals.collect::<Vec<_>>()).with_robots(ranges::properties(folder, info)?)?;
     let mut conditions = gates.conditions(suite, records, true);
     // A command that is none of `run` is that of an older program.
     if RunArgs::of_command(&info.command).is_none_or(|run| robots::is_own_size(suite, run.size)) {
@@ -84,13 +84,6 @@ pub fn conclude(info: &RunInfo, findings: &Findings) -> Result<(), Fail> {
             Err(Fail::Gate(format!("{unmet} of {} gates failed{first}", info.expected.len())))
         }
     }
-}
-
-/// The properties of a run's robots, which known deviations are told by.
-pub fn properties(folder: &Path, info: &RunInfo) -> Result<Vec<(String, Properties)>, Fail> {
-    let message =
-        || format!("{}: run.json has no properties of its robots: another version wrote it; run the suite again", folder.display());
-    info.robots.iter().map(RobotInfo::known_properties).collect::<Option<_>>().ok_or_else(|| Fail::input(message()))
 }
 
 /// Prints the counts of a run, or writes them in the place of those of its suite.

@@ -3,9 +3,8 @@
 use crate::args::GateArgs;
 use crate::fail::Fail;
 use crate::message::say;
-use crate::report::gate::properties;
 use crate::root::Root;
-use ::featherbench_results::{Row, RunInfo};
+use ::featherbench_results::{Properties, RobotInfo, Row, RunInfo};
 use featherbench_bench::{Deviation, Engines, Gates, Ranges, RangesMeter, SEEDS, SLACK};
 use std::path::Path;
 
@@ -82,4 +81,11 @@ fn print(deviations: &[Deviation], ranges: &Ranges, runs: usize) {
         };
         say!("{span}: {} {}: {}", deviation.engine, deviation.id, deviation.reason);
     }
+}
+
+/// The properties of a run's robots, which known deviations are told by.
+pub fn properties(folder: &Path, info: &RunInfo) -> Result<Vec<(String, Properties)>, Fail> {
+    let message =
+        || format!("{}: run.json has no properties of its robots: another version wrote it; run the suite again", folder.display());
+    info.robots.iter().map(RobotInfo::known_properties).collect::<Option<_>>().ok_or_else(|| Fail::input(message()))
 }

@@ -3,10 +3,9 @@
 use crate::args::{Format, GenArgs};
 use crate::fail::Fail;
 use crate::message::{self, tell};
-use crate::robots::robot_file;
 use crate::root::Root;
 use crate::{oracles, robots};
-use featherbench_bench::FileFormat;
+use featherbench_bench::{FileBase, FileContent, FileFormat, RobotSource};
 use featherbench_constrained::{Mechanism, Mobility};
 use featherbench_formats::OnLoss;
 use featherbench_formats::neutral::{self, NeutralError};
@@ -25,7 +24,7 @@ pub fn generate(root: &Root, args: &GenArgs) -> Result<(), Fail> {
             notes.iter().for_each(|note| tell!("note: {}: {note}", file.display()));
             description
         }
-        (Some(file), "mjcf") => compiled(root, file, args.floating)?,
+        (Some(file), "mjcf") => compiled(root, &FileContent::recognised(file)?, args.floating)?,
         (Some(file), "neutral") => robots::read_model(file)?,
         (_, spec) if spec.contains(':') => {
             let generated = Family::parse(spec).and_then(|family| family.generate());
@@ -84,11 +83,10 @@ pub fn write(description: &Description, path: Option<&Path>) -> Result<(), Neutr
     }
 }
 
-/// What MuJoCo's compiler makes of an MJCF file, with its notes.
-pub fn compiled(root: &Root, path: &Path, floating: bool) -> Result<Description, Fail> {
-    // A bad file is told before any engine is started.
-    let file = robot_file::open(path, false)?;
-    if file.format == FileFormat::Urdf {
+/// What MuJoCo's compiler makes of an MJCF file, with its notes. A bad file is told before any engine is started.
+pub fn compiled(root: &Root, content: &FileContent, floating: bool) -> Result<Description, Fail> {
+    let path = &content.path;
+    if content.format == FileFormat::Urdf {
         return Err(Fail::input(format!("{}: this is a URDF; read it by `featherbench gen urdf --file …`", path.display())));
     }
     if floating {
@@ -98,16 +96,13 @@ pub fn compiled(root: &Root, path: &Path, floating: bool) -> Result<Description,
         message: format!("{}: MuJoCo's compiler reads MJCF files, and it is not installed", path.display()),
         advice: "install the reference engines by `featherbench oracles install`".into(),
     })?;
-    let reading = robots::read_mjcf(&file, &robots::compiler(root)?)?;
-    for note in &reading.notes {
-        let about = note.about.as_ref().map_or_else(String::new, |about| format!("{about}: "));
-        tell!("note: {}: {about}{}", path.display(), note.text);
-    }
-    if !reading.keyframes.is_empty() {
-        let count = reading.keyframes.len();
+    let source = RobotSource::mjcf(content.file(FileBase::Fixed)?, &robots::compiler(root)?)?;
+    source.notes.iter().for_each(|note| tell!("note: {}: {note}", path.display()));
+    if !source.keyframes.is_empty() {
+        let count = source.keyframes.len();
         tell!("note: {}: keyframes, which a description does not hold (`compare` takes them as states): {count}", path.display());
     }
-    Ok(reading.description)
+    Ok(source.description)
 }
 
 /// The robot as a URDF or MJCF if one is asked for, with a note on everything that was left out.

@@ -5,10 +5,10 @@ use crate::fail::Fail;
 use crate::message::tell;
 use crate::message::{say, text};
 use crate::report::parquet;
-use crate::robots::{generate, robot_file};
+use crate::robots::generate;
 use crate::root::Root;
 use crate::{oracles, robots};
-use featherbench_bench::{Engine, FileFormat, SemidefiniteProblem};
+use featherbench_bench::{Engine, FileContent, FileFormat, SemidefiniteProblem};
 use featherbench_engines::Limits;
 use featherbench_formats::urdf::{Base as UrdfBase, Options};
 use featherbench_identification::{
@@ -50,11 +50,12 @@ fn robot(root: &dyn Fn() -> Result<Root, Fail>, args: &IdentifyArgs) -> Result<D
     if path.extension().is_some_and(|ending| ending == "json") {
         return robots::read_model(path);
     }
-    if robot_file::open(path, args.floating)?.format == FileFormat::Mjcf {
-        return generate::compiled(&root()?, path, args.floating);
+    let content = FileContent::recognised(path)?;
+    if content.format == FileFormat::Mjcf {
+        return generate::compiled(&root()?, &content, args.floating);
     }
     let base = if args.floating { UrdfBase::Floating } else { UrdfBase::Fixed };
-    let (description, notes) = robots::import(path, &Options { base, independent_mimics: false, allow_massless: false })?;
+    let (description, notes) = content.urdf(&Options { base, independent_mimics: false, allow_massless: false })?;
     notes.iter().for_each(|note| tell!("note: {}: {note}", path.display()));
     Ok(description)
 }

@@ -3,7 +3,6 @@
 pub mod generate;
 pub mod identify;
 pub mod residuals;
-pub mod robot_file;
 pub mod uncertainty;
 
 use crate::fail::Fail;
@@ -11,12 +10,10 @@ use crate::message::tell;
 use crate::oracles;
 use crate::root::Root;
 use ::featherbench_results::ModelOrigin;
-use featherbench_bench::{
-    Engine, FileBase, FileFormat, FileInertial, FileLink, Import, NoAnswer, Robot, RobotEntry, RobotFile, Suite, WATER, did_you_mean,
-};
+use featherbench_bench::{FileBase, FileContent, FileFormat, Robot, RobotEntry, RobotSource, Suite, did_you_mean};
 use featherbench_engines::{Limits, Oracle};
-use featherbench_formats::urdf::{Base, Inertial, LinkInFile, Note, Options};
-use featherbench_model::{Description, Warning};
+use featherbench_formats::urdf::{Note, Options};
+use featherbench_model::Description;
 use featherbench_robots::{Family, StateBatch};
 use std::collections::HashSet;
 use std::num::NonZeroUsize;
@@ -59,19 +56,17 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>, size: Optio
     }
     for entry in parsed.robots.iter().filter(|entry| live || !entry.only_live) {
         for (base, named) in entry.bases() {
-            let Described { description, warnings, origin, file, keyframes } = files.describe(entry, base)?;
+            let source = files.describe(entry, base)?;
+            let description = &source.description;
             let bad = |error: &dyn std::error::Error| Fail::input(format!("{}: robot '{}': {error}", path.display(), description.name));
             let states = entry.states.unwrap_or(states);
-            let mut robot = Robot::new(&description, &entry.family, origin, states, parsed.seed).map_err(|error| bad(&error))?;
+            let mut robot = Robot::new(description, &entry.family, source.origin, states, parsed.seed).map_err(|error| bad(&error))?;
             if entry.reach.is_some() || entry.speed.is_some() {
                 let (reach, speed) = (entry.reach.unwrap_or(std::f64::consts::PI), entry.speed.unwrap_or(1.0));
                 let drawn = StateBatch::narrow(&robot.model, states, parsed.seed, reach, speed);
                 robot = robot.at(drawn);
             }
-            robot = robot.with_warnings(warnings).with_keyframes(&keyframes, parsed.seed).map_err(|error| bad(&error))?;
-            if let Some(file) = file {
-                robot = robot.from_file(file);
-            }
+            robot = robot.with_source(&source, parsed.seed).map_err(|error| bad(&error))?;
             let name = entry.name.clone().unwrap_or(robot.name);
             robot.name = if named { format!("{name}-free") } else { name };
             robot.studies.clone_from(&entry.studies);
@@ -149,22 +144,6 @@ pub fn named(root: impl Fn() -> Result<Root, Fail>, name: &str) -> Result<Descri
     })
 }
 
-/// A robot and where it came from.
-struct Described {
-    description: Description,
-    /// What its reader normalised.
-    warnings: Vec<Warning>,
-    origin: ModelOrigin,
-    file: Option<RobotFile>,
-    keyframes: Vec<Vec<f64>>,
-}
-
-impl Described {
-    fn without_file(description: Description, origin: ModelOrigin) -> Self {
-        Self { description, warnings: Vec::new(), origin, file: None, keyframes: Vec::new() }
-    }
-}
-
 /// Where the robots of a suite come from.
 struct Files<'a> {
     root: &'a Root,
@@ -174,16 +153,16 @@ struct Files<'a> {
 }
 
 impl Files<'_> {
-    fn describe(&mut self, entry: &RobotEntry, base: FileBase) -> Result<Described, Fail> {
+    fn describe(&mut self, entry: &RobotEntry, base: FileBase) -> Result<RobotSource, Fail> {
         if let Some(name) = &entry.model {
             let description = read_model(&self.root.models().join(format!("{name}.json")))?;
             let origin = if description.provenance.is_some() { ModelOrigin::Robot } else { ModelOrigin::Generated };
-            return Ok(Described::without_file(description, origin));
+            return Ok(RobotSource::new(description, origin));
         }
         if let Some(spec) = &entry.generate {
             let generated = Family::parse(spec).and_then(|family| family.generate());
             return generated
-                .map(|description| Described::without_file(description, ModelOrigin::Generated))
+                .map(|description| RobotSource::new(description, ModelOrigin::Generated))
                 .map_err(|error| Fail::input(error.to_string()));
         }
         let (file, folder, format) = match &entry.mjcf {
@@ -197,19 +176,11 @@ impl Files<'_> {
             let message = format!("the suite takes {file} from the packages of robots, which only live runs have");
             Fail::Missing { message, advice: "run it with --live, after `featherbench oracles install`".into() }
         })?;
-        let mut file = RobotFile::open(&folder.join(file), format, base)?;
-        let (description, warnings, keyframes) = match format {
-            FileFormat::Urdf => {
-                file.links = links(&file)?;
-                let (description, notes) = read_urdf(&file)?;
-                (description, normalised(notes), Vec::new())
-            }
-            FileFormat::Mjcf => {
-                let reading = read_mjcf(&file, self.compiler()?)?;
-                (reading.description, Vec::new(), reading.keyframes)
-            }
-        };
-        Ok(Described { description, warnings, origin: ModelOrigin::Robot, file: Some(file), keyframes })
+        let content = FileContent::read(&folder.join(file), format)?;
+        Ok(match format {
+            FileFormat::Urdf => RobotSource::urdf(&content, base)?,
+            FileFormat::Mjcf => RobotSource::mjcf(content.file(base)?, self.compiler()?)?,
+        })
     }
 
     /// MuJoCo, started when the first MJCF file is read.
@@ -230,48 +201,6 @@ pub fn compiler(root: &Root) -> Result<Oracle, Fail> {
     let engine = described.compiler(FileFormat::Mjcf);
     let engine = engine.ok_or_else(|| Fail::input("oracles/engines.toml: no engine has compiles = \"mjcf\"".into()))?;
     oracles::start(root, engine, Limits::default())
-}
-
-/// The reference reading of a URDF file: ours. As engines read such files by default: mimics move on their own, and a body without mass is
-/// known by its warning. With notes on what is read otherwise than it is written.
-pub fn read_urdf(file: &RobotFile) -> Result<(Description, Vec<Note>), Fail> {
-    let base = match file.base {
-        FileBase::Fixed => Base::Fixed,
-        FileBase::Free => Base::Floating,
-    };
-    let options = Options { base, independent_mimics: true, allow_massless: true };
-    let (mut description, notes) = import(&file.path, &options)?;
-    // One package holds several variants of one robot's name: the file's name tells them apart.
-    description.name = stem(&file.path, description.name);
-    Ok((description, notes))
-}
-
-/// The warnings among a reader's notes: what was normalised.
-pub fn normalised(notes: Vec<Note>) -> Vec<Warning> {
-    notes.into_iter().filter_map(|note| note.warning).collect()
-}
-
-/// What a URDF file says of its links one by one.
-pub fn links(file: &RobotFile) -> Result<Vec<FileLink>, Fail> {
-    let text = std::fs::read_to_string(&file.path).map_err(|error| Fail::input(format!("{}: {error}", file.path.display())))?;
-    let inertial = |x: Inertial| FileInertial { mass: x.mass, com: x.com, rotation: x.rotation, inertia: x.inertia };
-    let link = |link: LinkInFile| FileLink { name: link.name, inertial: link.inertial.map(inertial), solids: link.solids.map(inertial) };
-    Ok(featherbench_formats::urdf::links(&text, WATER).into_iter().map(link).collect())
-}
-
-/// The reference reading of an MJCF file: that of MuJoCo's compiler, with the file's own inertias where the compiler refuses those.
-pub fn read_mjcf(file: &RobotFile, compiler: &dyn Engine) -> Result<Import, Fail> {
-    let refused = |no_answer: NoAnswer| Fail::input(format!("{}: MuJoCo does not read it: {no_answer}", file.path.display()));
-    let mut reading = compiler.read(file).map_err(refused)?;
-    if let Some(written) = reading.written.take() {
-        reading.description = written.canonical().map_err(|error| Fail::input(format!("{}: {error}", file.path.display())))?;
-    }
-    reading.description.name = stem(&file.path, reading.description.name);
-    Ok(reading)
-}
-
-fn stem(path: &Path, otherwise: String) -> String {
-    path.file_stem().map_or(otherwise, |stem| stem.to_string_lossy().into_owned())
 }
 
 /// Reads a description file.

@@ -2,8 +2,8 @@
 
 use crate::fail::Fail;
 use crate::message::tell;
-use crate::oracles::environment::Environment;
-use crate::oracles::{pins, spinner};
+use crate::oracles::environment::{Environment, pins};
+use crate::progress::spinner;
 use crate::root::Root;
 use featherbench_bench::hash;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};

@@ -17,15 +17,11 @@ use featherbench_bench::HarnessError;
 use featherbench_bench::shard::{Part, Plan, SHARD_NAME};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use std::fs::OpenOptions;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 /// What a sweep is, in its folder: it goes on only as itself.
 const SWEEP_NAME: &str = "sweep.json";
-/// The rounds of a sweep, one line of JSON each.
-const JOURNAL_NAME: &str = "journal.jsonl";
 /// How many workers may end under a task before HyperQueue gives it up; the next round starts it again.
 const CRASHES: usize = 5;
 /// A task: a shard that was begun goes on, and one that is finished is not begun again. A folder without a fingerprint holds nothing but what a
@@ -98,7 +94,7 @@ pub fn sweep(root: &Root, args: &SweepArgs) -> Result<(), Fail> {
         let workers = args.workers.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
         let wanted = Wanted { server: args.server_dir.as_deref(), workers, crashes: CRASHES, tasks };
         let driver = Driver::start(root, &python)?;
-        journal(&folder, &json!({ "round": round, "tasks": numbers, "driver": driver.id(), "time": now() }))?;
+        shard::journal(&folder, &json!({ "round": round, "tasks": numbers, "driver": driver.id(), "time": now() }))?;
         match driver.drive(&wanted) {
             Ok(failed) => failed.iter().for_each(|(name, why)| tell!("note: {name}: {why}")),
             Err(why) => tell!("note: the process that gives HyperQueue its tasks: {why}"),
@@ -198,16 +194,6 @@ fn text(path: &Path) -> Result<String, Fail> {
 
 fn now() -> String {
     humantime::format_rfc3339_seconds(SystemTime::now()).to_string()
-}
-
-/// Appends a line to the journal of a folder.
-pub fn journal(folder: &Path, line: &serde_json::Value) -> Result<(), Fail> {
-    let path = folder.join(JOURNAL_NAME);
-    let io = |source| HarnessError::io(&path, source);
-    let mut file = OpenOptions::new().create(true).append(true).open(&path).map_err(io)?;
-    // In one call: lines of two processes do not mix.
-    file.write_all(format!("{line}\n").as_bytes()).map_err(io)?;
-    Ok(())
 }
 
 #[cfg(test)]

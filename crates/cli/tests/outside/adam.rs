@@ -1,7 +1,7 @@
 //! Adam, if it is installed: C code that is generated and compiled for each robot, its answers against our own kernels, and what it refuses.
 
 use super::native::{self, PATIENT};
-use super::{Outcome, oracle_command};
+use super::{Outcome, Unpassed, oracle_command};
 use crate::support::{Ended, project};
 use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
 use featherbench_engines::Oracle;
@@ -10,34 +10,27 @@ use std::ffi::OsString;
 use std::process::Command;
 
 /// The command of its oracle.
-fn command() -> Result<Vec<OsString>, Outcome> {
+fn command() -> Result<Vec<OsString>, Unpassed> {
     let python = project().join("target/oracles/adam/venv/bin/python");
     let installed = python.exists() && project().join("target/oracles/adam/installed").exists();
-    let skipped = || Outcome::Skipped("adam is not installed (`featherbench oracles install adam`)".into());
+    let skipped = || Unpassed::Skipped("adam is not installed (`featherbench oracles install adam`)".into());
     if installed { Ok(oracle_command(&python, "adam")) } else { Err(skipped()) }
 }
 
 /// A test that asks adam.
 pub fn with_adam(test: fn(&Oracle)) -> Outcome {
-    match command() {
-        Ok(command) => {
-            test(&Oracle::start(command, PATIENT).unwrap());
-            Outcome::Passed
-        }
-        Err(skipped) => skipped,
-    }
+    let command = command()?;
+    test(&Oracle::start(command, PATIENT).unwrap());
+    Ok(())
 }
 
 /// It conforms to the protocol. Compiling takes longer than most answers.
 pub fn conforms() -> Outcome {
-    let command = match command() {
-        Ok(command) => command,
-        Err(skipped) => return skipped,
-    };
+    let command = command()?;
     let mut check = Command::new(env!("CARGO_BIN_EXE_featherbench"));
     check.current_dir(project()).args(["oracles", "check", "--timeout", "600"]).args(command);
     Ended::new(check.output().unwrap()).expect(0, &["conforms", "adam has no armature"]);
-    Outcome::Passed
+    Ok(())
 }
 
 /// It agrees on chains, trees and arms, fixed and floating, with gravity of any direction.

@@ -1,6 +1,6 @@
 //! Clarabel, if it is installed: a solver of convex problems, which knows no robots.
 
-use super::{Outcome, oracle_command};
+use super::{Outcome, Unpassed, oracle_command};
 use crate::support::{Ended, Sandbox, project};
 use featherbench_identification::{Arm, Log, Samples, Scenario, Terms};
 use serde_json::Value;
@@ -8,23 +8,20 @@ use std::path::PathBuf;
 use std::process::Command;
 
 /// Its interpreter, if it is installed.
-fn python() -> Result<PathBuf, Outcome> {
+fn python() -> Result<PathBuf, Unpassed> {
     if project().join("target/oracles/clarabel/installed").exists() {
         return Ok(project().join("target/oracles/clarabel/venv/bin/python"));
     }
-    Err(Outcome::Skipped("clarabel is not installed (`featherbench oracles install clarabel`)".into()))
+    Err(Unpassed::Skipped("clarabel is not installed (`featherbench oracles install clarabel`)".into()))
 }
 
 /// It conforms to the protocol: relaxed contacts and semidefinite least squares have the answers that they have by hand.
 pub fn conforms() -> Outcome {
-    let python = match python() {
-        Ok(python) => python,
-        Err(skipped) => return skipped,
-    };
+    let python = python()?;
     let mut check = Command::new(env!("CARGO_BIN_EXE_featherbench"));
     check.current_dir(project()).args(["oracles", "check"]).args(oracle_command(&python, "clarabel"));
     Ended::new(check.output().unwrap()).expect(0, &["conforms"]);
-    Outcome::Passed
+    Ok(())
 }
 
 /// `identify --method semidefinite` solves its programme with it.
@@ -32,9 +29,7 @@ pub fn conforms() -> Outcome {
 /// - Without noise the programme's solution is the truth: the base parameters are those of least squares.
 /// - With noise least squares give a body that cannot exist, and the programme does not.
 pub fn identifies() -> Outcome {
-    if let Err(skipped) = python() {
-        return skipped;
-    }
+    python()?;
     let scenario = Scenario::of(&Arm::general(3, 4), Terms::NONE, 150).unwrap();
     let sandbox = Sandbox::new();
     let robot = sandbox.path("arm.json");
@@ -68,5 +63,5 @@ pub fn identifies() -> Outcome {
     let held = numbers(&identified(&noisy, "semidefinite")["smallest_eigenvalues"]);
     assert!(free.iter().any(|smallest| *smallest < 0.0), "{free:?}");
     assert!(held.iter().all(|smallest| *smallest >= 0.0), "{held:?}");
-    Outcome::Passed
+    Ok(())
 }

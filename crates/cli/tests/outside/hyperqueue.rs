@@ -1,7 +1,7 @@
 //! A sweep by HyperQueue, if that is installed: what a task, a server and the client that are killed leave behind is gone on with, to the byte.
 
-use crate::Outcome;
 use crate::support::{Ended, Sandbox, project};
+use crate::{Outcome, Unpassed};
 use featherbench_protocol::Message;
 use serde_json::Value;
 use std::collections::HashSet;
@@ -13,6 +13,18 @@ use std::time::Duration;
 /// Nineteen tasks of some cells each; the last runs alone.
 const SWEEP: [&str; 10] =
     ["sweep", "smoke", "--no-timing", "--workers", "2", "--task-seconds", "0.015", "--out", "swept/made", "--retries"];
+
+/// A project that has HyperQueue, and where it is installed.
+fn with_hyperqueue() -> Result<(Sandbox, PathBuf), Unpassed> {
+    let installed = project().join("target/oracles/hyperqueue");
+    if !installed.join("installed").exists() {
+        return Err(Unpassed::Skipped("HyperQueue is not installed (`featherbench sweep` installs it)".into()));
+    }
+    let sandbox = Sandbox::new();
+    std::fs::create_dir_all(sandbox.path("target/oracles")).unwrap();
+    std::os::unix::fs::symlink(&installed, sandbox.path("target/oracles/hyperqueue")).unwrap();
+    Ok((sandbox, installed))
+}
 
 /// The journal of a folder: what has been started in it.
 fn journal(folder: &Path) -> Vec<Value> {
@@ -61,13 +73,7 @@ fn entries(shard: &Path) -> Vec<String> {
 
 /// A task, the server and the client are killed.
 pub fn goes_on() -> Outcome {
-    let installed = project().join("target/oracles/hyperqueue");
-    if !installed.join("installed").exists() {
-        return Outcome::Skipped("HyperQueue is not installed (`featherbench sweep` installs it)".into());
-    }
-    let sandbox = Sandbox::new();
-    std::fs::create_dir_all(sandbox.path("target/oracles")).unwrap();
-    std::os::unix::fs::symlink(installed, sandbox.path("target/oracles/hyperqueue")).unwrap();
+    let (sandbox, _) = with_hyperqueue()?;
     // The run's name is in each row and is its folder's: so both have the same.
     sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--out", "one/made"]).expect(0, &["report:"]);
 
@@ -131,7 +137,7 @@ pub fn goes_on() -> Outcome {
     assert_eq!(last["kept"].as_u64().unwrap() + 1, last["cells"].as_u64().unwrap(), "one cell was evaluated again");
 
     assert!(journal(&sweep).len() >= 3, "the rounds: {:?}", journal(&sweep));
-    Outcome::Passed
+    Ok(())
 }
 
 /// A server with two workers, in a process of its own: HyperQueue's Python package has no other. It ends when its standard input closes.
@@ -147,13 +153,7 @@ with LocalCluster(sys.argv[1]) as cluster:
 
 /// A sweep gives its tasks to a server that another process runs, and leaves it running.
 pub fn uses_a_server() -> Outcome {
-    let installed = project().join("target/oracles/hyperqueue");
-    if !installed.join("installed").exists() {
-        return Outcome::Skipped("HyperQueue is not installed (`featherbench sweep` installs it)".into());
-    }
-    let sandbox = Sandbox::new();
-    std::fs::create_dir_all(sandbox.path("target/oracles")).unwrap();
-    std::os::unix::fs::symlink(&installed, sandbox.path("target/oracles/hyperqueue")).unwrap();
+    let (sandbox, installed) = with_hyperqueue()?;
     sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--out", "one/made"]).expect(0, &["report:"]);
 
     let folder = sandbox.path("server");
@@ -175,5 +175,5 @@ pub fn uses_a_server() -> Outcome {
     // Without a server there is a message, and no sweep.
     let none = ["sweep", "smoke", "--no-timing", "--server-dir", server_dir, "--retries", "0", "--out", "third/made"];
     sandbox.run(&none).expect(2, &[]);
-    Outcome::Passed
+    Ok(())
 }

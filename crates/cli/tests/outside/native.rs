@@ -1,6 +1,6 @@
 //! Native oracles: a small test engine through the C interface, and the large engines against our kernels where they are built.
 
-use super::{Outcome, exists};
+use super::{Outcome, Unpassed, exists};
 use crate::support::{Sandbox, project};
 use featherbench_bench::measure::{ForwardScale, ratio, scaled_error, worst};
 use featherbench_bench::{DENSE_LIMIT, Engine, NoAnswer, Quantity, Robot};
@@ -79,9 +79,9 @@ fn ask(engine: &dyn Engine, robot: &Robot, quantity: Quantity, method: &str) -> 
 }
 
 /// The pendulum, compiled with its faults.
-fn pendulum(folder: &Path) -> Result<PathBuf, Outcome> {
+fn pendulum(folder: &Path) -> Result<PathBuf, Unpassed> {
     if !exists("cc") {
-        return Err(Outcome::Skipped("there is no C compiler".into()));
+        return Err(Unpassed::Skipped("there is no C compiler".into()));
     }
     let library = folder.join("pendulum.so");
     let source = project().join("oracles/native/pendulum.c");
@@ -164,10 +164,7 @@ fn inverse_residual(mass: &[f64], inverse: &[f64]) -> f64 {
 
 pub fn pendulum_answers() -> Outcome {
     let folder = tempfile::tempdir().unwrap();
-    let library = match pendulum(folder.path()) {
-        Ok(library) => library,
-        Err(skipped) => return skipped,
-    };
+    let library = pendulum(folder.path())?;
     let oracle = start(&library, PATIENT, None).unwrap();
     assert_eq!((oracle.identity().name.as_str(), oracle.identity().build["language"].as_str()), ("pendulum", "C"));
     for spec in ["chain:n=1,layout=spatial", "chain:n=1,layout=planar", "tree:n=1,armature=true"] {
@@ -182,16 +179,13 @@ pub fn pendulum_answers() -> Outcome {
     assert!(matches!(&two, Err(NoAnswer::NotOffered(reason)) if reason.contains("2 bodies")), "{two:?}");
     let unknown = ask(&oracle, &robot("chain:n=1", 1), Quantity::Momentum, "pendulum");
     assert!(matches!(&unknown, Err(NoAnswer::NotOffered(reason)) if reason.contains("offers no method")), "{unknown:?}");
-    Outcome::Passed
+    Ok(())
 }
 
 /// The clock is read beside the loop: its time is that of all calls, and nothing else.
 pub fn pendulum_is_clocked() -> Outcome {
     let folder = tempfile::tempdir().unwrap();
-    let library = match pendulum(folder.path()) {
-        Ok(library) => library,
-        Err(skipped) => return skipped,
-    };
+    let library = pendulum(folder.path())?;
     // On a core of its own choice; on a core that does not exist it does not start.
     let reason = start(&library, PATIENT, Some(1 << 20)).err().unwrap();
     assert!(reason.contains("core 1048576"), "{reason}");
@@ -225,16 +219,13 @@ pub fn pendulum_is_clocked() -> Outcome {
     assert_eq!(quick.relocate(1), Ok(true));
     quick.run(3..5).unwrap();
     assert_eq!(quick.read(), there, "at another place of the memory the same robot, states and method");
-    Outcome::Passed
+    Ok(())
 }
 
 /// Whatever a library does to its process becomes a reason, and the next question is answered.
 pub fn pendulum_dies_alone() -> Outcome {
     let folder = tempfile::tempdir().unwrap();
-    let library = match pendulum(folder.path()) {
-        Ok(library) => library,
-        Err(skipped) => return skipped,
-    };
+    let library = pendulum(folder.path())?;
     let robot = robot("chain:n=1", 3);
     let clock = Arc::new(Stopped::default());
     let command = native::command(Path::new(env!("CARGO_BIN_EXE_featherbench")), &library, None);
@@ -260,19 +251,18 @@ pub fn pendulum_dies_alone() -> Outcome {
     assert!(reason.contains("/nowhere/at/all.so"), "{reason}");
     let other = project().join("Cargo.toml");
     assert!(start(&other, PATIENT, None).is_err_and(|reason| reason.contains("Cargo.toml")));
-    Outcome::Passed
+    Ok(())
 }
 
 /// The libraries that `oracles status` names, but for those that cargo builds, by day as well: their tests are in files of their own.
-fn built() -> Vec<(String, PathBuf)> {
+fn built() -> Result<Vec<(String, PathBuf)>, Unpassed> {
     let output = Command::new(env!("CARGO_BIN_EXE_featherbench")).current_dir(project()).args(["oracles", "status"]).output().unwrap();
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     let library = |line: &str| Some((line.split_whitespace().next()?.to_owned(), PathBuf::from(line.split("  ").last()?)));
-    text.lines()
-        .filter(|line| line.ends_with(".so"))
-        .filter_map(library)
-        .filter(|(name, _)| !super::library::NAMES.contains(&name.as_str()))
-        .collect()
+    let libraries = text.lines().filter(|line| line.ends_with(".so")).filter_map(library);
+    let built: Vec<_> = libraries.filter(|(name, _)| !super::library::NAMES.contains(&name.as_str())).collect();
+    let nightly = || Unpassed::Nightly("no native oracle is built (`featherbench oracles install --native`)".into());
+    if built.is_empty() { Err(nightly()) } else { Ok(built) }
 }
 
 /// The known ratio of an engine's error to what rounding may cause (ci/deviations). It is twice the largest ratio over twenty seeds of
@@ -291,10 +281,7 @@ fn slack(oracle: &str, quantity: Quantity, robot: &str) -> f64 {
 }
 
 pub fn oracles_agree() -> Outcome {
-    let built = built();
-    if built.is_empty() {
-        return Outcome::Nightly("no native oracle is built (`featherbench oracles install --native`)".into());
-    }
+    let built = built()?;
     let robots =
         ["chain-spatial-10", "chain:n=36,layout=spatial", "chain-spatial-100", "humanoid", "panda", "tree-common-16-spread0.3-seed3"];
     for spec in robots {
@@ -317,19 +304,16 @@ pub fn oracles_agree() -> Outcome {
             }
         }
     }
-    Outcome::Passed
+    Ok(())
 }
 
 /// A robot that is too large for a native oracle is an error with a reason, before the machine's memory is requested.
 pub fn big_robots_are_refused_or_answered() -> Outcome {
-    let built = built();
-    if built.is_empty() {
-        return Outcome::Nightly("no native oracle is built (`featherbench oracles install --native`)".into());
-    }
+    let built = built()?;
     for (name, library) in &built {
         big_robot_is_refused_or_answered(name, &start(library, PATIENT, None).unwrap());
     }
-    Outcome::Passed
+    Ok(())
 }
 
 /// A chain of a thousand links.
@@ -350,5 +334,5 @@ pub fn no_compiler() -> Outcome {
     let output = command.env("XDG_CACHE_HOME", sandbox.path("cache")).output().unwrap();
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(text.contains("pinocchio-clang") && text.contains("oracles install"), "{text}");
-    Outcome::Passed
+    Ok(())
 }

@@ -1,7 +1,7 @@
 //! Rapier, if it is built: its answers against our own kernels on robots with every joint that it has, its errors, and its steps. And the
 //! message if it cannot be built.
 
-use super::{Outcome, checked};
+use super::{Outcome, Unpassed, checked};
 use crate::support::{Ended, Sandbox, project};
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
 use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
@@ -34,49 +34,37 @@ fn sources() -> Sandbox {
     sandbox
 }
 
-fn program() -> Result<PathBuf, Outcome> {
-    PROGRAM.clone().ok_or_else(|| Outcome::Skipped("rapier is not built (`featherbench oracles install rapier`)".into()))
+fn program() -> Result<PathBuf, Unpassed> {
+    PROGRAM.clone().ok_or_else(|| Unpassed::Skipped("rapier is not built (`featherbench oracles install rapier`)".into()))
 }
 
 /// A test that asks rapier.
 pub fn with_rapier(test: fn(&Oracle)) -> Outcome {
-    match program() {
-        Ok(program) => {
-            test(&Oracle::start(vec![program.into_os_string()], Limits::default()).unwrap());
-            Outcome::Passed
-        }
-        Err(skipped) => skipped,
-    }
+    let program = program()?;
+    test(&Oracle::start(vec![program.into_os_string()], Limits::default()).unwrap());
+    Ok(())
 }
 
 /// It conforms to the whole protocol, with steps.
 pub fn conforms() -> Outcome {
-    let program = match program() {
-        Ok(program) => program,
-        Err(skipped) => return skipped,
-    };
+    let program = program()?;
     let command = &mut Command::new(env!("CARGO_BIN_EXE_featherbench"));
     let ended = Ended::new(command.current_dir(project()).args(["oracles", "check"]).arg(program).output().unwrap());
     ended.expect(0, &["conforms", "offers  steps by step, step_default", "step by step: 19 robots", "fall by step: 7 robots"]);
-    Outcome::Passed
+    Ok(())
 }
 
 /// Its own suite, judged by the gates.
 pub fn suite() -> Outcome {
-    if let Err(skipped) = program() {
-        return skipped;
-    }
+    program()?;
     let folder = tempfile::tempdir().unwrap();
     let command = &mut Command::new(env!("CARGO_BIN_EXE_featherbench"));
-    match checked(command.current_dir(project()).args(["run", "--suite", "engines", "--out"]).arg(folder.path().join("out"))) {
-        Outcome::Passed => {}
-        other => return other,
-    }
+    checked(command.current_dir(project()).args(["run", "--suite", "engines", "--out"]).arg(folder.path().join("out")))?;
     let rows = std::fs::read_to_string(folder.path().join("out/rows.csv")).unwrap();
     for regime in ["explicit", "implicit"] {
         assert!(rows.lines().any(|row| row.contains(",rapier,") && row.contains(regime)), "no step is {regime}");
     }
-    Outcome::Passed
+    Ok(())
 }
 
 /// Without cargo, and without a registry, an engine of the suite is missing; the message says what to do.
@@ -94,7 +82,7 @@ pub fn not_to_be_built() -> Outcome {
     assert!(!sandbox.path("out").exists(), "no folder is made for a run that cannot be");
     let status = sandbox.run(&["oracles", "status"]).output;
     assert!(status.contains("rapier           is not built: run `featherbench oracles install rapier`"), "{status}");
-    Outcome::Passed
+    Ok(())
 }
 
 fn robot(words: &str) -> Robot {

@@ -1,7 +1,7 @@
 //! Files that we write, imported by the engines' own parsers.
 
-use crate::Outcome;
 use crate::support::project;
+use crate::{Outcome, Unpassed};
 use featherbench_bench::measure::worst;
 use featherbench_formats::{ExportError, OnLoss, mjcf, neutral, urdf};
 use featherbench_model::{Description, JointType};
@@ -127,10 +127,10 @@ pub fn mjcf_round_trip(python: &Path) -> Outcome {
     }
     let unexpected = refused.iter().find(|reason| !reason.contains("helical joint"));
     if let Some(reason) = unexpected {
-        return Outcome::Failed(reason.clone());
+        return Err(Unpassed::Failed(reason.clone()));
     }
     assert!(met >= 55, "{met} robots made the trip");
-    Outcome::Passed
+    Ok(())
 }
 
 /// Asserts that an import result is the robot, where a joint in several parts is a chain of massless bodies.
@@ -196,7 +196,7 @@ pub fn urdf_read_alike(python: &Path) -> Outcome {
         }
         assert!(compared >= 10, "{engine} compared {compared} robots");
     }
-    Outcome::Passed
+    Ok(())
 }
 
 /// For each dof of `ours`, its place in `theirs`: joints by their names. The free joint is an exception, as engines name it differently.

@@ -47,6 +47,9 @@ pub enum HarnessError {
         /// The folder.
         path: PathBuf,
     },
+    /// A URDF file has an error.
+    #[error(transparent)]
+    Urdf(#[from] featherbench_formats::urdf::UrdfError),
     /// An error of the rows.
     #[error(transparent)]
     Row(#[from] featherbench_results::ResultsError),

@@ -17,7 +17,8 @@
 //!
 //! # The walk of a robot file
 //! ```text
-//! robot.urdf, .xml, .json      formats                        one parser each; errors name line and column
+//! robot.urdf, .xml             FileContent                    bench      read once, its format recognised, its hash
+//!   → RobotSource              urdf::Parsed, MuJoCo           formats    parsed once; errors name line and column
 //!   → Description              plain numbers as written       model
 //!   → canonical Description    Description::canonical         depth-first, fixed joints merged, axes normalised once
 //!   → content hash             canonical JSON                 bench      every cell of the robot carries it
@@ -60,6 +61,7 @@ pub use engine::stepper::Stepper;
 pub use engine::with_residual::WithResidual;
 pub use engine::{Engine, Evaluation, Identity, NoAnswer};
 pub use error::HarnessError;
+pub use featherbench_formats::urdf::{FileInertial, FileLink};
 pub use featherbench_protocol::{Limits, Memory};
 pub use featherbench_results::Quantity;
 pub use gates::counts::{COUNTS_NAME, Count, Counts};
@@ -70,8 +72,10 @@ pub use gates::ranges::{Range, RangeKey, Ranges, RangesMeter};
 pub use gates::{Factor, Gate, Gates, Planted, Sharpness};
 pub use layout::DENSE_LIMIT;
 pub use robot::class::RobotClass;
-pub use robot::import::{FileBase, FileFormat, FileInertial, FileLink, Import, ImportNote, RobotFile, WATER};
+pub use robot::file::{FileBase, FileContent, FileFormat, RobotFile, WATER};
+pub use robot::import::{Import, ImportNote};
 pub use robot::relocation::Relocation;
+pub use robot::source::RobotSource;
 pub use robot::{Robot, Route};
 pub use run::cell::{Cell, Outcome};
 pub use run::entries::{Entries, Lost};

@@ -1,6 +1,6 @@
 //! The properties of robots: of generated ones, of ones with altered bodies, and of files.
 
-use featherbench_bench::{FileBase, FileFormat, Robot, RobotFile};
+use featherbench_bench::{FileBase, FileContent, FileFormat, Robot};
 use featherbench_model::{Description, JointType};
 use featherbench_results::{Base, Feature, ModelOrigin, Properties};
 use featherbench_robots::Family;
@@ -107,7 +107,7 @@ fn of_file(name: &str, text: &str, format: FileFormat) -> Vec<Feature> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     std::fs::write(&path, text).unwrap();
-    let file = RobotFile::open(&path, format, FileBase::Fixed).unwrap();
+    let file = FileContent::read(&path, format).unwrap().file(FileBase::Fixed).unwrap();
     robot(&description("chain:n=3,layout=spatial")).from_file(file).properties().features
 }
 
@@ -146,7 +146,7 @@ fn roots_count_in_mjcf() {
     let star = robot(&description("star:n=4"));
     assert_eq!(star.properties().features, []);
     for (format, expected) in [(FileFormat::Urdf, Vec::new()), (FileFormat::Mjcf, vec![Feature::SeveralRoots])] {
-        let file = RobotFile::open(&path, format, FileBase::Fixed).unwrap();
+        let file = FileContent::read(&path, format).unwrap().file(FileBase::Fixed).unwrap();
         assert_eq!(star.clone().from_file(file).properties().features, expected);
     }
 }

@@ -3,6 +3,7 @@
 mod asked;
 pub(crate) mod contacts;
 mod folders;
+pub(crate) mod hello;
 mod import;
 pub(crate) mod loops;
 pub(crate) mod residual;
@@ -19,58 +20,25 @@ use asked::Asked;
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
 use featherbench_bench::{
     ContactSolver, Engine, Evaluation, Identity, Import, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, RodSolver, Route, SceneEngine,
-    SemidefiniteSolver, StepMethod, Stepper,
+    SemidefiniteSolver, Stepper,
 };
 use featherbench_protocol::{Block, Clock, Limits, Message, Process, SystemClock, VERSION};
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
-use loops::Loops;
-use scenes::Scenes;
+use hello::Hello;
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::sync::{Arc, Mutex, PoisonError};
-use steps::Steps;
+use std::time::Duration;
 
 /// An engine that runs in its own process.
 pub struct Oracle {
     identity: Identity,
-    methods: BTreeMap<String, Vec<String>>,
-    timed_by: TimedBy,
-    /// Whether it can relocate its data in memory.
-    relocate: bool,
-    /// What it offers of steps, if it integrates.
-    steps: Option<Steps>,
-    /// What it offers of robots with loops.
-    loops: Option<Loops>,
-    /// Its solvers of contact problems.
-    contact_solvers: Vec<String>,
-    /// Its solvers of their convex relaxation.
-    contact_relaxations: Vec<String>,
-    /// Its methods for steps of a robot on its contacts.
-    contact_steps: Vec<StepMethod>,
-    /// Its methods for least squares under semidefinite conditions.
-    semidefinite: Vec<String>,
-    /// Its elements of elastic rods.
-    rods: Vec<String>,
-    /// What it offers of scenes.
-    scenes: Scenes,
-    /// What it says of its residual, if it has one.
-    residual: Option<residual::Offered>,
+    hello: Hello,
     command: Vec<OsString>,
     limits: Limits,
     clock: Arc<dyn Clock>,
     idle: Mutex<Vec<Session>>,
-}
-
-/// Which clock measures a time.
-enum TimedBy {
-    /// Ours, around the whole request and answer.
-    Us,
-    /// The oracle's, beside its loop.
-    Itself,
-    /// The oracle's, in a language whose overhead it subtracts, and for these methods only.
-    Estimate(BTreeMap<String, Vec<String>>),
 }
 
 /// A part of the identity of an oracle whose times are estimates.
@@ -107,60 +75,15 @@ impl Oracle {
         if protocol != Some(VERSION) {
             return Err(format!("the oracle speaks protocol {protocol:?}, this program {VERSION}"));
         }
-        let build = hello.header.get("build").cloned().unwrap_or_else(|| json!({}));
-        let methods = hello.header.get("methods").cloned().unwrap_or_else(|| json!({}));
-        let mut identity = Identity {
-            name: hello.text("engine").to_owned(),
-            version: hello.text("version").to_owned(),
-            source: EngineSource::Live,
-            build: serde_json::from_value(build).map_err(|error| format!("hello: build: {error}"))?,
-        };
-        let methods = serde_json::from_value(methods).map_err(|error| format!("hello: methods: {error}"))?;
-        if identity.name.is_empty() || identity.version.is_empty() {
-            return Err("hello: engine and version must not be empty".into());
+        let hello = Hello::read(&hello.header).and_then(|hello| hello.check().map(|()| hello));
+        let hello = hello.map_err(|reason| format!("hello: {reason}"))?;
+        let (name, version, build) = (hello.engine.clone(), hello.version.clone(), hello.build.clone());
+        let mut identity = Identity { name, version, source: EngineSource::Live, build };
+        if hello.estimates() {
+            identity.build.insert("clock".into(), ESTIMATE.into());
         }
-        let timed_by = match hello.header.get("clock") {
-            Some(Value::Bool(true)) => TimedBy::Itself,
-            Some(Value::String(kind)) if kind == "estimate" => {
-                identity.build.insert("clock".into(), ESTIMATE.into());
-                let timed = hello.header.get("timed").cloned().unwrap_or_else(|| json!({}));
-                TimedBy::Estimate(serde_json::from_value(timed).map_err(|error| format!("hello: timed: {error}"))?)
-            }
-            _ => TimedBy::Us,
-        };
-        let relocate = hello.header.get("relocate").and_then(Value::as_bool).unwrap_or(false);
-        let steps = Steps::offered(hello.header.get("steps")).map_err(|reason| format!("hello: {reason}"))?;
-        let loops = Loops::offered(hello.header.get("loops")).map_err(|reason| format!("hello: {reason}"))?;
-        let contact_steps = contacts::steps_offered(hello.header.get("contact_steps")).map_err(|reason| format!("hello: {reason}"))?;
-        let scenes = Scenes::offered(&hello.header).map_err(|reason| format!("hello: {reason}"))?;
-        let listed = |key: &str| -> Result<Vec<String>, String> {
-            let names = hello.header.get(key).cloned().unwrap_or_else(|| json!([]));
-            serde_json::from_value(names).map_err(|error| format!("hello: {key}: {error}"))
-        };
-        let (contact_solvers, contact_relaxations) = (listed("contact_solvers")?, listed("contact_relaxations")?);
-        let (semidefinite, rods) = (listed("semidefinite_least_squares")?, listed("rods")?);
-        let residual = hello.header.get("residual").cloned().map(serde_json::from_value).transpose();
-        let residual = residual.map_err(|error| format!("hello: residual: {error}"))?;
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
-        Ok(Self {
-            identity,
-            methods,
-            timed_by,
-            relocate,
-            steps,
-            loops,
-            contact_solvers,
-            contact_relaxations,
-            contact_steps,
-            semidefinite,
-            rods,
-            scenes,
-            residual,
-            command,
-            limits,
-            clock,
-            idle: Mutex::new(vec![session]),
-        })
+        Ok(Self { identity, hello, command, limits, clock, idle: Mutex::new(vec![session]) })
     }
 
     /// The same oracle under another name; the engine's own name goes into its build, where it differs.
@@ -187,15 +110,17 @@ impl Oracle {
         self
     }
 
-    fn session(&self) -> Result<Session, NoAnswer> {
+    /// A session that nobody uses, or a new one.
+    fn session(&self) -> Result<Lent<'_>, NoAnswer> {
         let idle = self.lock().pop();
-        match idle {
-            Some(session) => Ok(session),
+        let session = match idle {
+            Some(session) => session,
             None => {
                 let process = Process::start_by(&self.command, self.limits, Arc::clone(&self.clock)).map_err(NoAnswer::Failed)?;
-                Ok(Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None })
+                Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None }
             }
-        }
+        };
+        Ok(Lent { oracle: self, session: Some(session) })
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Vec<Session>> {
@@ -212,30 +137,27 @@ impl Engine for Oracle {
         // The read-back comes with every robot.
         match quantity {
             Quantity::Readback => vec!["build".into()],
-            _ => self.methods.get(quantity.name()).cloned().unwrap_or_default(),
+            _ => self.hello.methods.get(quantity.name()).cloned().unwrap_or_default(),
         }
     }
 
     fn timed(&self, quantity: Quantity) -> Vec<String> {
-        match &self.timed_by {
-            TimedBy::Estimate(timed) => timed.get(quantity.name()).cloned().unwrap_or_default(),
-            TimedBy::Us | TimedBy::Itself => self.methods(quantity),
+        match self.hello.estimates() {
+            true => self.hello.timed.get(quantity.name()).cloned().unwrap_or_default(),
+            false => self.methods(quantity),
         }
     }
 
     fn estimates(&self) -> bool {
-        matches!(self.timed_by, TimedBy::Estimate(_))
+        self.hello.estimates()
     }
 
     fn has_clock(&self) -> bool {
-        !matches!(self.timed_by, TimedBy::Us)
+        self.hello.has_clock()
     }
 
     fn read(&self, file: &RobotFile) -> Result<Import, NoAnswer> {
-        let mut session = self.session()?;
-        let reading = session.read(file);
-        self.give_back(session);
-        reading
+        self.session()?.open()?.read(file)
     }
 
     fn prepare<'a>(
@@ -246,50 +168,66 @@ impl Engine for Oracle {
         states: &'a StateBatch,
     ) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
         let mut session = self.session()?;
-        match session.build(robot).and_then(|()| session.send_states(robot, states)) {
-            Ok(()) => Ok(Box::new(Asked::new(self, session, robot, quantity, method))),
-            Err(refusal) => {
-                self.give_back(session);
-                Err(refusal)
-            }
-        }
+        session.open()?.hold(robot, states)?;
+        Ok(Box::new(Asked::new(session, robot, quantity, method)))
     }
 
     fn contact_solver(&self) -> Option<&dyn ContactSolver> {
-        let lists = [&self.contact_solvers, &self.contact_relaxations];
-        (lists.iter().any(|names| !names.is_empty()) || !self.contact_steps.is_empty()).then_some(self)
+        self.hello.solves_contacts().then_some(self)
     }
 
     fn loop_solver(&self) -> Option<&dyn LoopSolver> {
-        self.loops.is_some().then_some(self)
+        self.hello.loops.is_some().then_some(self)
     }
 
     fn semidefinite_solver(&self) -> Option<&dyn SemidefiniteSolver> {
-        (!self.semidefinite.is_empty()).then_some(self)
+        (!self.hello.semidefinite_least_squares.is_empty()).then_some(self)
     }
 
     fn rod_solver(&self) -> Option<&dyn RodSolver> {
-        (!self.rods.is_empty()).then_some(self)
+        (!self.hello.rods.is_empty()).then_some(self)
     }
 
     fn scene_engine(&self) -> Option<&dyn SceneEngine> {
-        (!self.scenes.is_empty()).then_some(self)
+        self.hello.has_scenes().then_some(self)
     }
 
     fn stepper(&self) -> Option<&dyn Stepper> {
-        self.steps.is_some().then_some(self)
+        self.hello.steps.is_some().then_some(self)
     }
 }
 
-impl Oracle {
-    fn give_back(&self, session: Session) {
-        if session.process.alive() {
-            self.lock().push(session);
+/// A session that the oracle has back at the end, if its process lives.
+struct Lent<'a> {
+    oracle: &'a Oracle,
+    session: Option<Session>,
+}
+
+impl Lent<'_> {
+    fn open(&mut self) -> Result<&mut Session, NoAnswer> {
+        self.session.as_mut().ok_or_else(|| NoAnswer::Failed("the oracle has ended".into()))
+    }
+
+    fn ask(&mut self, header: Value, blocks: Vec<Block>) -> Result<Message, NoAnswer> {
+        self.open()?.ask(header, blocks)
+    }
+}
+
+impl Drop for Lent<'_> {
+    fn drop(&mut self) {
+        if let Some(session) = self.session.take().filter(|session| session.process.alive()) {
+            self.oracle.lock().push(session);
         }
     }
 }
 
 impl Session {
+    /// Lets the engine hold a robot in states.
+    fn hold(&mut self, robot: &Robot, states: &StateBatch) -> Result<(), NoAnswer> {
+        self.build(robot)?;
+        self.send_states(robot, states)
+    }
+
     fn ask(&mut self, header: Value, blocks: Vec<Block>) -> Result<Message, NoAnswer> {
         checked(self.process.ask(&Message::new(header, blocks)).map_err(NoAnswer::Failed)?)
     }
@@ -307,13 +245,7 @@ impl Session {
         self.reading = None;
         let description = request::description(robot).map_err(NoAnswer::Failed)?;
         let answer = self.ask(json!({"op": "prepare", "model": description}), Vec::new())?;
-        let topology = &robot.model.topology;
-        for (key, expected) in [("nq", robot.description.nq()), ("nv", topology.nv())] {
-            let found = answer.header.get(key).and_then(Value::as_u64);
-            if found != Some(expected as u64) {
-                return Err(NoAnswer::Failed(format!("the engine reports {key} {found:?}, the robot has {expected}")));
-            }
-        }
+        sized(&answer, robot.description.nq(), robot.model.topology.nv())?;
         self.readback = shaped(&answer, "readback", &shape::of_readback(robot))?;
         self.model.clone_from(&robot.hash);
         Ok(())
@@ -378,4 +310,26 @@ pub(crate) fn checked(answer: Message) -> Result<Message, NoAnswer> {
 /// The numbers of a block that must have this shape.
 pub(crate) fn shaped(answer: &Message, name: &str, due: &[usize]) -> Result<Vec<f64>, NoAnswer> {
     shape::block(answer, name, due).map(<[f64]>::to_vec).map_err(NoAnswer::Failed)
+}
+
+/// An error if the engine's robot has other sizes.
+fn sized(answer: &Message, nq: usize, nv: usize) -> Result<(), NoAnswer> {
+    for (key, due) in [("nq", nq), ("nv", nv)] {
+        let found = answer.header.get(key).and_then(Value::as_u64);
+        if found != Some(due as u64) {
+            return Err(NoAnswer::Failed(format!("the engine reports {key} {found:?}, the robot has {due}")));
+        }
+    }
+    Ok(())
+}
+
+/// A time that an answer tells.
+fn told_time(answer: &Message, key: &str) -> Result<f64, NoAnswer> {
+    let time = answer.header.get(key).and_then(Value::as_f64).filter(|time| time.is_finite() && *time >= 0.0);
+    time.ok_or_else(|| NoAnswer::Failed(format!("the oracle's answer has no {key}")))
+}
+
+/// The engine's own time.
+pub(crate) fn own_time(answer: &Message) -> Result<Duration, NoAnswer> {
+    Ok(Duration::from_secs_f64(told_time(answer, "nanoseconds")? * 1e-9))
 }

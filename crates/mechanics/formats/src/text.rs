@@ -93,10 +93,15 @@ pub(crate) fn read(path: &Path, limit: usize) -> Result<String, TextError> {
     let mut bytes = Vec::new();
     // One byte more than allowed shows that the file is too long; reading devices and pipes ends there too.
     File::open(path)?.take(limit as u64 + 1).read_to_end(&mut bytes)?;
+    of_bytes(&bytes, limit).map(str::to_owned)
+}
+
+/// The text of the content of a file of at most `limit` bytes.
+pub(crate) fn of_bytes(bytes: &[u8], limit: usize) -> Result<&str, TextError> {
     if bytes.len() > limit {
         return Err(TextError::TooBig { limit });
     }
-    String::from_utf8(bytes).map_err(|error| TextError::NotText { byte: error.utf8_error().valid_up_to() })
+    std::str::from_utf8(bytes).map_err(|error| TextError::NotText { byte: error.valid_up_to() })
 }
 
 /// The text without a byte-order mark; an error when it is too long or blank.

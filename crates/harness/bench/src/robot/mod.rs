@@ -3,13 +3,16 @@
 pub(crate) mod class;
 pub mod conventions;
 pub mod drawing;
+pub(crate) mod file;
 pub(crate) mod import;
 pub(crate) mod properties;
+mod recognised;
 pub(crate) mod relocation;
+pub(crate) mod source;
 
 use crate::measure::Magnitudes;
-use crate::{Import, RobotFile};
-use featherbench_model::{Description, Malformed, Model, Warning};
+use crate::{Import, RobotFile, RobotSource};
+use featherbench_model::{Description, Malformed, Model};
 use featherbench_results::ModelOrigin;
 use featherbench_robots::{BadState, StateBatch};
 use serde_json::Value;
@@ -134,23 +137,22 @@ impl Robot {
         self
     }
 
-    /// The same robot, with the numbers that its parser normalised among the model's warnings.
-    pub fn with_warnings(mut self, warnings: impl IntoIterator<Item = Warning>) -> Self {
-        self.model.warnings.splice(0..0, warnings);
-        self
-    }
-
-    /// The same robot, with states at the configurations of its file; at most the first 16.
+    /// The same robot with what its source says besides the description: warnings of the model, states at its keyframes (at most the first
+    /// 16), its file.
     ///
     /// # Errors
-    /// [`BadState`] of a configuration that is not this robot's.
-    pub fn with_keyframes(self, keyframes: &[Vec<f64>], seed: u64) -> Result<Self, BadState> {
-        if keyframes.is_empty() {
-            return Ok(self);
+    /// [`BadState`] of a keyframe that is not this robot's.
+    pub fn with_source(mut self, source: &RobotSource, seed: u64) -> Result<Self, BadState> {
+        self.model.warnings.splice(0..0, source.warnings.iter().cloned());
+        let keyframes = &source.keyframes[..source.keyframes.len().min(KEYFRAMES)];
+        if !keyframes.is_empty() {
+            let states = self.states.clone().with_keyframes(&self.model, keyframes, seed)?;
+            self = self.at(states);
         }
-        let some = &keyframes[..keyframes.len().min(KEYFRAMES)];
-        let states = self.states.clone().with_keyframes(&self.model, some, seed)?;
-        Ok(self.at(states))
+        Ok(match &source.file {
+            Some(file) => self.from_file(file.clone()),
+            None => self,
+        })
     }
 
     /// The body whose Jacobian is evaluated: the first of the deepest ones.

@@ -2,9 +2,9 @@
 
 use super::exchange::Exchange;
 use super::hypotheses::{HYPOTHESES, Hypothesis};
-use super::protocol::Methods;
 use super::values::{Scene, same_bits};
 use super::{Standing, robots};
+use crate::oracle::hello::Methods;
 use crate::request::states;
 use crate::shape;
 use featherbench_bench::Quantity;

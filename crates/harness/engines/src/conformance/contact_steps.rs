@@ -4,7 +4,7 @@
 
 use super::Standing;
 use super::exchange::Exchange;
-use crate::oracle::{contacts, shaped};
+use crate::oracle::{contacts, own_time, shaped};
 use featherbench_bench::{ContactSteps, StepMethod};
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType};
 use serde_json::{Value, json};
@@ -80,10 +80,7 @@ fn stepped(exchange: &mut Exchange, method: &str) {
     let what = format!("a step on contacts by {method}");
     let mut answer = |first| -> Result<Vec<f64>, String> {
         let answer = exchange.ask(question(method, first, 2), Vec::new())?;
-        let time = answer.header.get("nanoseconds").and_then(Value::as_f64);
-        if !time.is_some_and(|time| time.is_finite() && time >= 0.0) {
-            return Err("there are no `nanoseconds`".into());
-        }
+        own_time(&answer).map_err(|refusal| refusal.to_string())?;
         shaped(&answer, "impulses", &[2, 3]).map_err(|refusal| refusal.to_string())
     };
     let answers = answer(0).and_then(|once| Ok((once, answer(0)?, answer(1)?)));

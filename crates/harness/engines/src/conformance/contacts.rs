@@ -2,7 +2,7 @@
 
 use super::Standing;
 use super::exchange::Exchange;
-use crate::oracle::{contacts, shaped};
+use crate::oracle::{contacts, own_time, shaped};
 use featherbench_bench::ContactProblems;
 use serde_json::{Value, json};
 
@@ -86,10 +86,7 @@ fn solved(exchange: &mut Exchange, method: &str, law: Law) {
     let what = if law == Law::Coulomb { format!("contacts by {method}") } else { format!("relaxed contacts by {method}") };
     let mut answer = |first, count| -> Result<Vec<f64>, String> {
         let answer = exchange.ask(question(method, first, count), Vec::new())?;
-        let time = answer.header.get("nanoseconds").and_then(Value::as_f64);
-        if !time.is_some_and(|time| time.is_finite() && time >= 0.0) {
-            return Err("there are no `nanoseconds`".into());
-        }
+        own_time(&answer).map_err(|refusal| refusal.to_string())?;
         shaped(&answer, "impulses", &[count, 6]).map_err(|refusal| refusal.to_string())
     };
     let answers = answer(0, 2).and_then(|once| Ok((once, answer(0, 2)?, answer(1, 2)?)));

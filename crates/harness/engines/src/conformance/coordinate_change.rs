@@ -1,7 +1,24 @@
 //! Velocities in other coordinates than ours.
 
-use super::hypotheses::State;
 use featherbench_model::{BodyDescription, Description, JointType};
+
+/// One state of a robot as it is sent, and featherbench's results for the bodies in it.
+#[derive(Clone, Default)]
+pub(super) struct State {
+    pub(super) q: Vec<f64>,
+    pub(super) v: Vec<f64>,
+    pub(super) a: Vec<f64>,
+    pub(super) tau: Vec<f64>,
+    pub(super) wrench: Vec<f64>,
+    /// featherbench's [`featherbench_bench::Quantity::BodyPlacement`].
+    pub(super) placement: Vec<f64>,
+    /// featherbench's [`featherbench_bench::Quantity::BodyVelocity`].
+    pub(super) velocity: Vec<f64>,
+    /// featherbench's [`featherbench_bench::Quantity::CenterOfMass`].
+    pub(super) com: Vec<f64>,
+    /// featherbench's [`featherbench_bench::Quantity::Momentum`].
+    pub(super) momentum: Vec<f64>,
+}
 
 /// v_e = T v and a_e = T a + b, with an orthogonal T, instead of v and a.
 pub(super) struct CoordinateChange {

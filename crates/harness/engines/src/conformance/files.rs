@@ -5,9 +5,9 @@
 
 use super::answers::{self, Answers};
 use super::exchange::Exchange;
-use super::protocol::Methods;
 use super::values::Scene;
 use super::{Standing, robots};
+use crate::oracle::hello::Methods;
 use featherbench_bench::{FileBase, FileFormat, Import, Quantity, Robot};
 use featherbench_formats::{OnLoss, mjcf, urdf};
 use featherbench_model::{BodyDescription, Description, JointType, Placement};

@@ -1,31 +1,13 @@
 //! Common mistakes of convention, as hypotheses: the answers of an oracle that makes this mistake and is right otherwise.
 
 use super::coordinate_change::{
-    CoordinateChange, ONE, SWAP, blocks, cross, of_free, of_order, of_planar, of_spherical, places, product, put_back, rotated_back,
+    CoordinateChange, ONE, SWAP, State, blocks, cross, of_free, of_order, of_planar, of_spherical, places, product, put_back, rotated_back,
     transposed,
 };
 use super::orders;
 use featherbench_bench::{Quantity, Robot};
 use featherbench_model::{Description, JointType};
 use std::f64::consts::TAU;
-
-/// One state of a robot as it is sent, and featherbench's results for the bodies in it.
-#[derive(Clone, Default)]
-pub(super) struct State {
-    pub(super) q: Vec<f64>,
-    pub(super) v: Vec<f64>,
-    pub(super) a: Vec<f64>,
-    pub(super) tau: Vec<f64>,
-    pub(super) wrench: Vec<f64>,
-    /// featherbench's [`Quantity::BodyPlacement`].
-    pub(super) placement: Vec<f64>,
-    /// featherbench's [`Quantity::BodyVelocity`].
-    pub(super) velocity: Vec<f64>,
-    /// featherbench's [`Quantity::CenterOfMass`].
-    pub(super) com: Vec<f64>,
-    /// featherbench's [`Quantity::Momentum`].
-    pub(super) momentum: Vec<f64>,
-}
 
 /// What a mistake makes of a right answer at one state.
 type Rewrite = fn(&Robot, Quantity, &State, &mut [f64]);

@@ -26,6 +26,7 @@ mod values;
 
 pub use exchange::Connection;
 
+use crate::oracle::hello::Hello;
 use answers::Answers;
 use exchange::Exchange;
 use featherbench_protocol::{Limits, Process};
@@ -99,14 +100,12 @@ pub fn check(start: &dyn Fn() -> Result<Box<dyn Connection>, String>, watch: &dy
     let scenes: Vec<Scene> = robots::all()?.into_iter().map(|(shows, robot)| Scene::new(shows, robot)).collect();
     let mut exchange = Exchange::new(start);
     watch("hello");
-    let Some(extras) = protocol::hello(&mut exchange) else { return Ok(exchange.conformance) };
+    let Some(hello) = protocol::hello(&mut exchange) else { return Ok(exchange.conformance) };
     watch("what has no answer");
     protocol::before_prepare(&mut exchange);
-    let offered = exchange.conformance.methods.clone();
     // A solver of problems, or a residual, need not have quantities.
-    let robots = !(offered.is_empty() && extras.solves());
-    if robots {
-        robots_of(&mut exchange, &scenes, &offered, &extras, watch)?;
+    if !hello.methods.is_empty() || !hello.solves_problems() {
+        robots_of(&mut exchange, &scenes, &hello, watch)?;
     } else {
         exchange.note(
             Standing::Lacks,
@@ -115,36 +114,31 @@ pub fn check(start: &dyn Fn() -> Result<Box<dyn Connection>, String>, watch: &dy
             &[],
         );
     }
-    if let Some(offered) = extras.residual {
+    if let Some(offered) = hello.residual {
         watch("residual");
         residual::ask(&mut exchange, &scenes, offered);
     }
     watch("problems");
-    contacts::ask(&mut exchange, &extras.contact_solvers, contacts::Law::Coulomb);
-    contacts::ask(&mut exchange, &extras.contact_relaxations, contacts::Law::Relaxed);
-    contact_steps::ask(&mut exchange, &extras.contact_steps);
-    semidefinite::ask(&mut exchange, &extras.semidefinite);
-    if let Some(offered) = &extras.loops {
+    contacts::ask(&mut exchange, &hello.contact_solvers, contacts::Law::Coulomb);
+    contacts::ask(&mut exchange, &hello.contact_relaxations, contacts::Law::Relaxed);
+    contact_steps::ask(&mut exchange, &hello.contact_steps());
+    semidefinite::ask(&mut exchange, &hello.semidefinite_least_squares);
+    if let Some(offered) = &hello.loops {
         watch("loops");
         loops::ask(&mut exchange, offered);
     }
     watch("rods");
-    rods::ask(&mut exchange, &extras.rods);
+    rods::ask(&mut exchange, &hello.rods);
     watch("scenes");
-    scenes::ask(&mut exchange, &extras.scenes);
+    scenes::ask(&mut exchange, &hello.scenes());
     watch("the end");
     protocol::end(&mut exchange);
     Ok(exchange.conformance)
 }
 
 /// What is asked about robots and files.
-fn robots_of(
-    exchange: &mut Exchange,
-    scenes: &[Scene],
-    offered: &BTreeMap<String, Vec<String>>,
-    extras: &protocol::Offered,
-    watch: &dyn Fn(&str),
-) -> Result<(), String> {
+fn robots_of(exchange: &mut Exchange, scenes: &[Scene], hello: &Hello, watch: &dyn Fn(&str)) -> Result<(), String> {
+    let (offered, extra) = (&hello.methods, hello.steps.clone().unwrap_or_default());
     let built = protocol::first_built(exchange, scenes);
     if let Some(scene) = built {
         protocol::with_robot(exchange, scene, offered);
@@ -153,12 +147,12 @@ fn robots_of(
     for (index, scene) in scenes.iter().enumerate() {
         watch(scene.shows);
         if answers::ask(exchange, index, scene, offered, &mut answers) {
-            steps::ask(exchange, scene, &extras.steps, &mut stepped);
+            steps::ask(exchange, scene, &extra, &mut stepped);
         }
     }
     watch("conventions");
     answers.judge(exchange, scenes, "");
-    steps::judge(exchange, &extras.steps, &stepped);
+    steps::judge(exchange, &extra, &stepped);
     answers::lacking(exchange, offered);
     watch("files");
     files::read(exchange, offered)

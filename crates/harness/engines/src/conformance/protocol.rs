@@ -3,107 +3,42 @@
 use super::exchange::Exchange;
 use super::values::{Scene, same_bits};
 use super::{Standing, robots};
-use crate::oracle::contacts;
-use crate::oracle::loops::Loops;
-use crate::oracle::residual;
-use crate::oracle::scenes::Scenes;
-use crate::oracle::steps::Steps;
+use crate::oracle::hello::{Hello, Methods};
 use crate::request::{description, states};
-use featherbench_bench::{Quantity, StepMethod};
+use featherbench_bench::Quantity;
 use featherbench_protocol::{Block, Message, VERSION};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
 
-/// Quantities by method.
-pub(super) type Methods = BTreeMap<String, Vec<String>>;
-
-/// What it offers beside quantities.
-#[derive(Default)]
-pub(super) struct Offered {
-    pub(super) steps: Steps,
-    pub(super) contact_solvers: Vec<String>,
-    pub(super) contact_relaxations: Vec<String>,
-    pub(super) contact_steps: Vec<StepMethod>,
-    pub(super) semidefinite: Vec<String>,
-    pub(super) rods: Vec<String>,
-    pub(super) scenes: Scenes,
-    pub(super) loops: Option<Loops>,
-    pub(super) residual: Option<residual::Offered>,
-}
-
-impl Offered {
-    /// Whether it solves problems that need no robot, or has a residual: then it need have no quantities.
-    pub(super) fn solves(&self) -> bool {
-        let lists = [&self.contact_solvers, &self.contact_relaxations, &self.semidefinite, &self.rods];
-        lists.iter().any(|names| !names.is_empty()) || !self.scenes.is_empty() || self.residual.is_some()
-    }
-}
-
-/// Asks for its identity and what it offers. Without an answer the test ends here.
-pub(super) fn hello(exchange: &mut Exchange) -> Option<Offered> {
+/// Asks for its identity and what it offers. Without an answer that can be read the test ends here.
+pub(super) fn hello(exchange: &mut Exchange) -> Option<Hello> {
     let answer = exchange.expect("it answers hello", json!({"op": "hello"}), Vec::new(), &["ok"])?;
     let mut wrong = Vec::new();
     let header = &answer.header;
     if header.get("protocol").and_then(Value::as_u64) != Some(VERSION) {
         wrong.push(format!("`protocol` is {}, not {VERSION}", header.get("protocol").unwrap_or(&Value::Null)));
     }
-    for key in ["engine", "version"] {
-        if answer.text(key).is_empty() {
-            wrong.push(format!("`{key}` is no text, or empty"));
-        }
-    }
-    let strings: Option<BTreeMap<String, String>> = header.get("build").and_then(|build| serde_json::from_value(build.clone()).ok());
-    if strings.is_none() {
-        wrong.push("`build` is no object of strings".into());
-    }
-    let methods: Option<Methods> = header.get("methods").and_then(|methods| serde_json::from_value(methods.clone()).ok());
-    match &methods {
-        None => wrong.push("`methods` is no object: quantity → list of names".into()),
-        Some(methods) => {
+    let missing = ["build", "methods"].into_iter().filter(|key| !header.contains_key(*key));
+    wrong.extend(missing.map(|key| format!("`{key}` is missing")));
+    let read = Hello::read(header);
+    match &read {
+        Err(reason) => wrong.push(reason.clone()),
+        Ok(hello) => {
+            wrong.extend(hello.check().err());
             let asked = |quantity: &str| Quantity::parse(quantity).is_some_and(|known| known != Quantity::Readback);
+            let methods = &hello.methods;
             wrong.extend(methods.keys().filter(|key| !asked(key)).map(|key| format!("`methods` names '{key}', which is no quantity")));
             let empty = methods.iter().filter(|(_, names)| names.is_empty() || names.iter().any(String::is_empty));
             wrong.extend(empty.map(|(quantity, _)| format!("`methods` has no method, or one without a name, for {quantity}")));
         }
     }
-    let steps = Steps::offered(header.get("steps")).unwrap_or_else(|reason| {
-        wrong.push(reason);
-        None
-    });
-    let loops = Loops::offered(header.get("loops")).unwrap_or_else(|reason| {
-        wrong.push(reason);
-        None
-    });
-    let scenes = Scenes::offered(header).unwrap_or_else(|reason| {
-        wrong.push(reason);
-        Scenes::default()
-    });
-    let contact_steps = contacts::steps_offered(header.get("contact_steps")).unwrap_or_else(|reason| {
-        wrong.push(reason);
-        Vec::new()
-    });
-    let residual = header.get("residual").map(|offered| serde_json::from_value(offered.clone())).transpose();
-    let residual: Option<residual::Offered> = residual.unwrap_or_else(|error| {
-        wrong.push(format!("`residual` is no {{\"acceleration\": true or false}}: {error}"));
-        None
-    });
-    let mut listed = |key: &str| -> Vec<String> {
-        let names = header.get(key).map_or(Ok(Vec::new()), |names| serde_json::from_value(names.clone()));
-        names.unwrap_or_else(|_| {
-            wrong.push(format!("`{key}` is no list of names"));
-            Vec::new()
-        })
-    };
-    let (contact_solvers, contact_relaxations) = (listed("contact_solvers"), listed("contact_relaxations"));
-    let (semidefinite, rods) = (listed("semidefinite_least_squares"), listed("rods"));
     let standing = if wrong.is_empty() { Standing::Right } else { Standing::Wrong };
     exchange.note(standing, "hello names protocol, engine, version, build and methods", &wrong.join("; "), &[]);
     exchange.conformance.engine = format!("{} {}", answer.text("engine"), answer.text("version"));
-    exchange.conformance.methods = methods.unwrap_or_default();
-    exchange.conformance.methods.retain(|quantity, _| Quantity::parse(quantity).is_some());
-    let steps = steps.unwrap_or_default();
-    exchange.conformance.steps.clone_from(&steps.methods);
-    Some(Offered { steps, contact_solvers, contact_relaxations, contact_steps, semidefinite, rods, scenes, loops, residual })
+    let mut hello = read.ok()?;
+    hello.methods.retain(|quantity, _| Quantity::parse(quantity).is_some());
+    exchange.conformance.methods.clone_from(&hello.methods);
+    exchange.conformance.steps = hello.steps.as_ref().map(|steps| steps.methods.clone()).unwrap_or_default();
+    Some(hello)
 }
 
 /// Requests that have no answer while there is no robot.

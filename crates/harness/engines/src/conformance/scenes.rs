@@ -2,8 +2,8 @@
 
 use super::Standing;
 use super::exchange::Exchange;
-use crate::oracle::scenes::{Scenes, motion, question};
-use featherbench_scenes::{Body, Motion, Scene};
+use crate::oracle::scenes::{motion, question};
+use featherbench_scenes::{Body, Motion, Scene, Variant};
 use serde_json::Value;
 
 /// The step, s, and how many.
@@ -38,8 +38,8 @@ fn resting() -> Scene {
 type Change = fn(&mut Value);
 
 /// Asks for everything.
-pub(super) fn ask(exchange: &mut Exchange, offered: &Scenes) {
-    let Some(first) = offered.variants.first() else { return };
+pub(super) fn ask(exchange: &mut Exchange, variants: &[Variant]) {
+    let Some(first) = variants.first() else { return };
     let asked = || question(&flying(), &first.name, DT, STEPS, STEPS);
     let changed = |change: Change| {
         let mut question = asked();
@@ -57,7 +57,7 @@ pub(super) fn ask(exchange: &mut Exchange, offered: &Scenes) {
     }
     let nobody = changed(|question| question["variant"] = "no such variant".into());
     exchange.expect("a scene by a variant that it does not have is unsupported", nobody, Vec::new(), &["unsupported"]);
-    for variant in &offered.variants {
+    for variant in variants {
         moved(exchange, &variant.name);
     }
 }

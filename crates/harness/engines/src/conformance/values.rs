@@ -1,7 +1,7 @@
 //! The answers of a right oracle, and of one with some mistakes.
 
-use super::coordinate_change::CoordinateChange;
-use super::hypotheses::{Hypothesis, State};
+use super::coordinate_change::{CoordinateChange, State};
+use super::hypotheses::Hypothesis;
 use crate::Featherbench;
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
 use featherbench_bench::{Engine, Quantity, Robot};

@@ -1,6 +1,6 @@
 //! Quantities of a robot in states, by the operations `evaluate` and `clock`.
 
-use super::{Oracle, Session, TimedBy, shaped};
+use super::{Lent, shaped};
 use crate::shape;
 use featherbench_bench::{Engine, Evaluation, NoAnswer, Quantity, Robot};
 use featherbench_protocol::Memory;
@@ -10,8 +10,7 @@ use std::time::Duration;
 
 /// A question to a session that has robot and states.
 pub(super) struct Asked<'a> {
-    oracle: &'a Oracle,
-    session: Option<Session>,
+    session: Lent<'a>,
     robot: &'a Robot,
     quantity: Quantity,
     method: String,
@@ -21,8 +20,8 @@ pub(super) struct Asked<'a> {
 }
 
 impl<'a> Asked<'a> {
-    pub(super) fn new(oracle: &'a Oracle, session: Session, robot: &'a Robot, quantity: Quantity, method: &str) -> Self {
-        Self { oracle, session: Some(session), robot, quantity, method: method.to_owned(), values: Vec::new(), overhead: None }
+    pub(super) fn new(session: Lent<'a>, robot: &'a Robot, quantity: Quantity, method: &str) -> Self {
+        Self { session, robot, quantity, method: method.to_owned(), values: Vec::new(), overhead: None }
     }
 
     /// The question about a range of states.
@@ -37,7 +36,7 @@ impl<'a> Asked<'a> {
 impl Evaluation for Asked<'_> {
     fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer> {
         let question = self.question("evaluate", &range);
-        let session = self.session.as_mut().ok_or_else(|| NoAnswer::Failed("the oracle has ended".into()))?;
+        let session = self.session.open()?;
         if self.quantity == Quantity::Readback {
             self.values.clone_from(&session.readback);
             return Ok(());
@@ -50,17 +49,17 @@ impl Evaluation for Asked<'_> {
     /// By the oracle's own clock, if it has one. Then the values are not sent, and [`Evaluation::read`] still has those of the last `run`.
     /// A range that goes beyond the batch begins again at its first state.
     fn clock(&mut self, range: Range<usize>) -> Result<Duration, NoAnswer> {
-        if matches!(self.oracle.timed_by, TimedBy::Us) {
-            let start = self.oracle.clock.now();
+        let oracle = self.session.oracle;
+        if !oracle.has_clock() {
+            let start = oracle.clock.now();
             self.run(range)?;
-            return Ok(self.oracle.clock.now() - start);
+            return Ok(oracle.clock.now() - start);
         }
         let question = self.question("clock", &range);
-        let session = self.session.as_mut().ok_or_else(|| NoAnswer::Failed("the oracle has ended".into()))?;
-        let answer = session.ask(question, Vec::new())?;
+        let answer = self.session.ask(question, Vec::new())?;
         let time = |key: &str| answer.header.get(key).and_then(Value::as_u64).map(Duration::from_nanos);
         self.overhead = time("overhead");
-        if self.oracle.estimates() && self.overhead.is_none() {
+        if oracle.estimates() && self.overhead.is_none() {
             return Err(NoAnswer::Failed("the oracle's answer has no overhead, and its times are estimates".into()));
         }
         time("nanoseconds").ok_or_else(|| NoAnswer::Failed("the oracle's answer has no nanoseconds".into()))
@@ -71,26 +70,17 @@ impl Evaluation for Asked<'_> {
     }
 
     fn relocate(&mut self, seed: u32) -> Result<bool, NoAnswer> {
-        if !self.oracle.relocate {
+        if !self.session.oracle.hello.relocate {
             return Ok(false);
         }
-        let session = self.session.as_mut().ok_or_else(|| NoAnswer::Failed("the oracle has ended".into()))?;
-        session.ask(json!({"op": "relocate", "seed": seed}), Vec::new()).map(|_| true)
+        self.session.ask(json!({"op": "relocate", "seed": seed}), Vec::new()).map(|_| true)
     }
 
     fn memory(&self) -> Option<Memory> {
-        self.session.as_ref().and_then(|session| session.process.memory())
+        self.session.session.as_ref().and_then(|session| session.process.memory())
     }
 
     fn read(&self) -> &[f64] {
         &self.values
-    }
-}
-
-impl Drop for Asked<'_> {
-    fn drop(&mut self) {
-        if let Some(session) = self.session.take() {
-            self.oracle.give_back(session);
-        }
     }
 }

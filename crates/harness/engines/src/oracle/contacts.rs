@@ -1,7 +1,7 @@
 //! Contact problems, solved by the engine behind an oracle: the operations `contact_problems` and `solve_contacts`, and `contact_steps` and
 //! `solve_contact_steps` of a robot on its contacts.
 
-use super::{Oracle, Session, shaped};
+use super::{Lent, Oracle, own_time, shaped};
 use featherbench_bench::{ContactProblems, ContactSolver, ContactSteps, Evaluation, NoAnswer, StepMethod};
 use featherbench_protocol::Block;
 use serde_json::{Value, json};
@@ -10,11 +10,11 @@ use std::time::Duration;
 
 impl ContactSolver for Oracle {
     fn contact_methods(&self) -> Vec<String> {
-        self.contact_solvers.clone()
+        self.hello.contact_solvers.clone()
     }
 
     fn contact_relaxations(&self) -> Vec<String> {
-        self.contact_relaxations.clone()
+        self.hello.contact_relaxations.clone()
     }
 
     fn prepare_contacts<'a>(
@@ -29,7 +29,7 @@ impl ContactSolver for Oracle {
     }
 
     fn contact_step_methods(&self) -> Vec<StepMethod> {
-        self.contact_steps.clone()
+        self.hello.contact_steps()
     }
 
     fn prepare_contact_steps<'a>(
@@ -55,30 +55,9 @@ impl Oracle {
     ) -> Result<Box<dyn Evaluation + '_>, NoAnswer> {
         let (header, blocks) = request?;
         let mut session = self.session()?;
-        match session.ask(header, blocks) {
-            Ok(_) => Ok(Box::new(Solving { oracle: self, session: Some(session), count, contacts, settings, impulses: Vec::new() })),
-            Err(refusal) => {
-                self.give_back(session);
-                Err(refusal)
-            }
-        }
+        session.ask(header, blocks)?;
+        Ok(Box::new(Solving { session, count, contacts, settings, impulses: Vec::new() }))
     }
-}
-
-/// What the part of `hello` about steps on contacts offers.
-///
-/// # Errors
-/// A sentence, when it is no object of objects, or one names no `limit` among them.
-pub(crate) fn steps_offered(offered: Option<&Value>) -> Result<Vec<StepMethod>, String> {
-    let Some(offered) = offered else { return Ok(Vec::new()) };
-    let wrong = || "`contact_steps` is no object: method → object of settings with `time` and `limit`, one of the methods".to_owned();
-    let object = offered.as_object().ok_or_else(wrong)?;
-    let method = |(name, settings): (&String, &Value)| {
-        let limit = settings["limit"].as_str().is_some_and(|limit| object.contains_key(limit));
-        let right = !name.is_empty() && settings["time"].is_string() && limit;
-        right.then(|| StepMethod { name: name.clone(), settings: settings.clone() }).ok_or_else(wrong)
-    };
-    object.iter().map(method).collect()
 }
 
 /// A robot on its contacts as a message.
@@ -112,8 +91,7 @@ pub(crate) fn request(problems: &ContactProblems) -> (Value, Vec<Block>) {
 
 /// A session that has the problems.
 struct Solving<'a> {
-    oracle: &'a Oracle,
-    session: Option<Session>,
+    session: Lent<'a>,
     /// How many problems there are, and contacts in each.
     count: usize,
     contacts: usize,
@@ -130,12 +108,9 @@ impl Evaluation for Solving<'_> {
     fn clock(&mut self, range: Range<usize>) -> Result<Duration, NoAnswer> {
         let mut question = self.settings.clone();
         (question["first"], question["count"]) = (range.start.into(), range.len().into());
-        let session = self.session.as_mut().ok_or_else(|| NoAnswer::Failed("the oracle has ended".into()))?;
-        let answer = session.ask(question, Vec::new())?;
+        let answer = self.session.ask(question, Vec::new())?;
         self.impulses = shaped(&answer, "impulses", &[range.len().min(self.count), 3 * self.contacts])?;
-        let nanoseconds = answer.header.get("nanoseconds").and_then(Value::as_f64).filter(|time| time.is_finite() && *time >= 0.0);
-        let nanoseconds = nanoseconds.ok_or_else(|| NoAnswer::Failed("the oracle's answer has no nanoseconds".into()))?;
-        Ok(Duration::from_secs_f64(nanoseconds * 1e-9))
+        own_time(&answer)
     }
 
     fn together(&self) -> usize {
@@ -144,37 +119,5 @@ impl Evaluation for Solving<'_> {
 
     fn read(&self) -> &[f64] {
         &self.impulses
-    }
-}
-
-impl Drop for Solving<'_> {
-    fn drop(&mut self) {
-        if let Some(session) = self.session.take() {
-            self.oracle.give_back(session);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_offer_names_its_time_and_its_limit() {
-        assert_eq!(steps_offered(None).unwrap(), Vec::new());
-        let good = json!({"newton": {"time": "all", "limit": "newton"}, "sweeps": {"time": "all", "limit": "newton", "impedance": 0.9}});
-        let offered = steps_offered(Some(&good)).unwrap();
-        assert_eq!(offered.iter().map(|method| method.name.as_str()).collect::<Vec<_>>(), ["newton", "sweeps"]);
-        assert_eq!(offered[1].settings["impedance"], 0.9);
-        for wrong in [
-            json!(["newton"]),
-            json!({"newton": 1}),
-            json!({"newton": {"limit": "newton"}}),
-            json!({"newton": {"time": "all"}}),
-            json!({"newton": {"time": "all", "limit": "other"}}),
-            json!({"": {"time": "all", "limit": ""}}),
-        ] {
-            assert!(steps_offered(Some(&wrong)).unwrap_err().contains("contact_steps"), "{wrong}");
-        }
     }
 }

@@ -1,6 +1,6 @@
 //! Robots with loops, held by the engine behind an oracle: the operations `loops`, `loop_accelerations` and `loop_motion`.
 
-use super::{Oracle, Session, shaped};
+use super::{Oracle, Session, own_time, shaped, sized};
 use featherbench_bench::{LoopAccelerations, LoopDrive, LoopMotion, LoopSolver, LoopStates, LoopSteps, NoAnswer};
 use featherbench_model::Description;
 use featherbench_protocol::{Block, Message};
@@ -17,30 +17,13 @@ pub(crate) struct Loops {
     pub(crate) motions: Vec<String>,
 }
 
-impl Loops {
-    /// What the header of a `hello` offers; `None` if it has no `loops`.
-    ///
-    /// # Errors
-    /// A sentence, when `loops` is not what the protocol says.
-    pub(crate) fn offered(loops: Option<&Value>) -> Result<Option<Self>, String> {
-        let Some(loops) = loops else { return Ok(None) };
-        let read: Self = serde_json::from_value(loops.clone()).map_err(|error| format!("`loops`: {error}"))?;
-        let nameless = read.accelerations.iter().chain(&read.motions).any(String::is_empty);
-        if nameless || (read.accelerations.is_empty() && read.motions.is_empty()) {
-            return Err("`loops` have no method, or one without a name".into());
-        }
-        Ok(Some(read))
-    }
-}
-
 impl Oracle {
     /// One question about a robot with loops.
     fn held(&self, robot: &Description, drive: Option<&LoopDrive>, header: Value, blocks: Vec<Block>) -> Result<Message, NoAnswer> {
         let prepare = request(robot, drive)?;
         let mut session = self.session()?;
-        let answer = build(&mut session, robot, drive.is_some(), prepare).and_then(|()| session.ask(header, blocks));
-        self.give_back(session);
-        answer
+        build(session.open()?, robot, drive.is_some(), prepare)?;
+        session.ask(header, blocks)
     }
 }
 
@@ -66,12 +49,7 @@ fn build(session: &mut Session, robot: &Description, driven: bool, request: Valu
     if driven && answer.header.get("driven") != Some(&Value::Bool(true)) {
         return Err(NoAnswer::NotOffered("the oracle takes no springs and constant forces".into()));
     }
-    for (key, due) in [("nq", robot.nq()), ("nv", robot.nv())] {
-        let found = answer.header.get(key).and_then(Value::as_u64);
-        if found != Some(due as u64) {
-            return Err(NoAnswer::Failed(format!("the engine reports {key} {found:?}, the robot has {due}")));
-        }
-    }
+    sized(&answer, robot.nq(), robot.nv())?;
     // Without its loops a robot is another one.
     let held = answer.header.get("held").and_then(Value::as_object).map_or(0, serde_json::Map::len);
     if held != robot.loops.len() {
@@ -88,20 +66,19 @@ pub(crate) fn model(robot: &Description) -> Result<Value, NoAnswer> {
 
 /// The engine's own time, and its settings.
 pub(crate) fn told(answer: &Message) -> Result<(Duration, Value), NoAnswer> {
-    let time = answer.header.get("nanoseconds").and_then(Value::as_f64).filter(|time| time.is_finite() && *time >= 0.0);
-    let time = time.ok_or_else(|| NoAnswer::Failed("the oracle's answer has no nanoseconds".into()))?;
+    let time = own_time(answer)?;
     let settings = answer.header.get("settings").filter(|settings| settings.is_object());
     let settings = settings.ok_or_else(|| NoAnswer::Failed("the oracle's answer has no settings".into()))?;
-    Ok((Duration::from_secs_f64(time * 1e-9), settings.clone()))
+    Ok((time, settings.clone()))
 }
 
 impl LoopSolver for Oracle {
     fn acceleration_methods(&self) -> Vec<String> {
-        self.loops.as_ref().map(|loops| loops.accelerations.clone()).unwrap_or_default()
+        self.hello.loops.as_ref().map(|loops| loops.accelerations.clone()).unwrap_or_default()
     }
 
     fn motion_methods(&self) -> Vec<String> {
-        self.loops.as_ref().map(|loops| loops.motions.clone()).unwrap_or_default()
+        self.hello.loops.as_ref().map(|loops| loops.motions.clone()).unwrap_or_default()
     }
 
     fn loop_accelerations(

@@ -34,7 +34,7 @@ impl std::fmt::Debug for OracleResidual<'_> {
 impl Oracle {
     /// Its residual for a robot, if it has one. The program is asked whenever the residual is.
     pub fn residual<'a>(&'a self, robot: &'a Robot) -> Option<OracleResidual<'a>> {
-        self.residual.map(|offered| OracleResidual { oracle: self, robot, offered })
+        self.hello.residual.map(|offered| OracleResidual { oracle: self, robot, offered })
     }
 }
 
@@ -57,11 +57,9 @@ impl OracleResidual<'_> {
         };
         let answer = (|| -> Result<Vec<f64>, NoAnswer> {
             let mut session = self.oracle.session()?;
-            let asked = session.build(self.robot).and_then(|()| session.send_states(self.robot, &states));
+            session.open()?.hold(self.robot, &states)?;
             let question = json!({"op": "residual", "first": 0, "count": count});
-            let answer = asked.and_then(|()| shaped(&session.ask(question, Vec::new())?, "value", &[count, nv]));
-            self.oracle.give_back(session);
-            answer
+            shaped(&session.ask(question, Vec::new())?, "value", &[count, nv])
         })();
         answer.map_err(|reason| ResidualError::NoAnswer(reason.to_string()))
     }

@@ -4,52 +4,18 @@ use super::{Oracle, shaped};
 use featherbench_bench::{NoAnswer, SceneEngine};
 use featherbench_protocol::Message;
 use featherbench_scenes::{Derivative, Motion, Scene, Variant};
-use serde_json::{Map, Value, json};
-
-/// The part of `hello` about scenes.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub(crate) struct Scenes {
-    pub(crate) variants: Vec<Variant>,
-    pub(crate) derivatives: Vec<Variant>,
-}
-
-impl Scenes {
-    /// What the header of a `hello` offers.
-    ///
-    /// # Errors
-    /// A sentence, when it is not what the protocol says.
-    pub(crate) fn offered(hello: &Map<String, Value>) -> Result<Self, String> {
-        let read = |key: &str| -> Result<Vec<Variant>, String> {
-            let Some(value) = hello.get(key) else { return Ok(Vec::new()) };
-            let wrong = || format!("`{key}` is no object: variant → object of settings");
-            let object = value.as_object().ok_or_else(wrong)?;
-            let variant = |(name, settings): (&String, &Value)| {
-                let settings = settings.as_object().filter(|_| !name.is_empty()).ok_or_else(wrong)?;
-                Ok(Variant { name: name.clone(), settings: settings.clone() })
-            };
-            object.iter().map(variant).collect()
-        };
-        Ok(Self { variants: read("scenes")?, derivatives: read("scene_derivatives")? })
-    }
-
-    pub(crate) fn is_empty(&self) -> bool {
-        self.variants.is_empty() && self.derivatives.is_empty()
-    }
-}
+use serde_json::{Value, json};
 
 impl Oracle {
     fn about_scene(&self, scene: &Scene, question: Value) -> Result<Message, NoAnswer> {
         scene.check().map_err(|error| NoAnswer::Failed(error.to_string()))?;
-        let mut session = self.session()?;
-        let answer = session.ask(question, Vec::new());
-        self.give_back(session);
-        answer
+        self.session()?.ask(question, Vec::new())
     }
 }
 
 impl SceneEngine for Oracle {
     fn scene_variants(&self) -> Vec<Variant> {
-        self.scenes.variants.clone()
+        self.hello.scenes()
     }
 
     fn simulate(&self, scene: &Scene, variant: &str, dt: f64, steps: usize, every: usize) -> Result<Motion, NoAnswer> {
@@ -57,7 +23,7 @@ impl SceneEngine for Oracle {
     }
 
     fn derivative_variants(&self) -> Vec<Variant> {
-        self.scenes.derivatives.clone()
+        self.hello.scene_derivatives()
     }
 
     fn differentiate(&self, scene: &Scene, variant: &str, stiffness: f64, dt: f64, steps: usize) -> Result<Derivative, NoAnswer> {

@@ -54,7 +54,7 @@ fn mistakes_are_found() {
     type Change = fn(&mut Message, &Message, &Kernels);
     let cases: [(Change, &str); 6] = [
         (|answer, request, _| told(answer, request, json!({"acceleration": false})), "r changes with the acceleration"),
-        (|answer, request, _| told(answer, request, json!({"accelerates": true})), "`residual` is no {\"acceleration\""),
+        (|answer, request, _| told(answer, request, json!({"accelerates": true})), "unknown field `accelerates`, expected `acceleration`"),
         (|answer, request, kernels| change(answer, request, kernels, |r| *r *= *r), "the second difference of r"),
         (|answer, request, kernels| change(answer, request, kernels, |r| *r = f64::NAN), "is NaN"),
         (

@@ -22,17 +22,16 @@ pub struct Contents {
     pub mesh_formats: BTreeSet<String>,
 }
 
-/// The contents of an MJCF file. Of a file that cannot be read, or is no XML, nothing is known.
-pub fn contents(path: &Path) -> Contents {
+/// The contents of an MJCF file of this text. Of what cannot be read, or is no XML, nothing is known.
+pub fn contents(path: &Path, text: &str) -> Contents {
     let mut contents = Contents::default();
-    let mut files = vec![path.to_owned()];
+    // Names of included files are relative to the folder of the first one.
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut files = contents.add(text);
     let mut next = 0;
-    while next < files.len().min(MOST_FILES) {
-        let file = files[next].clone();
-        if let Ok(text) = std::fs::read_to_string(&file) {
-            // Names of included files are relative to the folder of the first one.
-            let folder = path.parent().unwrap_or(Path::new(""));
-            files.extend(contents.add(&text).into_iter().map(|name| folder.join(name)));
+    while next < files.len().min(MOST_FILES - 1) {
+        if let Ok(text) = std::fs::read_to_string(folder.join(&files[next])) {
+            files.extend(contents.add(&text));
         }
         next += 1;
     }
@@ -80,7 +79,7 @@ mod tests {
         let of = |text: &str| {
             let path = folder.path().join("robot.xml");
             std::fs::write(&path, text).unwrap();
-            contents(&path)
+            contents(&path, text)
         };
         assert_eq!(of("<mujoco/>"), Contents::default());
         assert_eq!(of("no XML"), Contents::default());

@@ -4,14 +4,13 @@ use super::elements::{Link, origin};
 use super::error::At;
 use super::xml::Element;
 use crate::solid::{self, Solid};
-use crate::text;
 use featherbench_model::Placement;
 use featherbench_spatial::{RigidBodyInertia, Sym3, Transform, Vec3};
-use roxmltree::Node;
+use roxmltree::{Document, Node};
 
 /// Mass properties, in axes of their own.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inertial {
+pub struct FileInertial {
     /// kg.
     pub mass: f64,
     /// The centre of mass in the link's frame, m.
@@ -24,25 +23,20 @@ pub struct Inertial {
 
 /// A link as the file has it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LinkInFile {
+pub struct FileLink {
     /// Its name.
     pub name: String,
     /// Its `<inertial>`.
-    pub inertial: Option<Inertial>,
+    pub inertial: Option<FileInertial>,
     /// The mass properties of its collision geometry at a density. `None` without geometry, or with a shape other than box, sphere,
     /// cylinder and capsule.
-    pub solids: Option<Inertial>,
+    pub solids: Option<FileInertial>,
 }
 
-/// The links of a URDF text in the order of the file, with their collision geometry at a density (kg/m³). A text that is not URDF has none.
-pub fn links(text: &str, density: f64) -> Vec<LinkInFile> {
-    let read = || -> Result<Vec<LinkInFile>, At> {
-        let text = text::check(text, super::LIMIT).unwrap_or_default();
-        let document = super::xml::parse(text)?;
-        let nodes = document.root_element().children().filter(|node| node.has_tag_name("link"));
-        nodes.map(|node| link(Element { node, owner: "the link" }, density)).collect()
-    };
-    read().unwrap_or_default()
+/// The links of a document, with their collision geometry at a density; none if one of them has an error.
+pub(super) fn links(document: &Document, density: f64) -> Vec<FileLink> {
+    let nodes = document.root_element().children().filter(|node| node.has_tag_name("link"));
+    nodes.map(|node| link(Element { node, owner: "the link" }, density)).collect::<Result<_, At>>().unwrap_or_default()
 }
 
 /// A `<mimic>` of a file.
@@ -54,9 +48,8 @@ pub struct Mimic {
     pub is_known: bool,
 }
 
-/// The mimics of a URDF text in the order of the file. A text that is not URDF has none.
-pub fn mimics(text: &str) -> Vec<Mimic> {
-    let Ok(document) = super::xml::parse(text::check(text, super::LIMIT).unwrap_or_default()) else { return Vec::new() };
+/// The mimics of a document.
+pub(super) fn mimics(document: &Document) -> Vec<Mimic> {
     let joints: Vec<Node> = document.root_element().children().filter(|node| node.has_tag_name("joint")).collect();
     let known = |name: Option<&str>| name.is_some() && joints.iter().any(|joint| joint.attribute("name") == name);
     let of_joint = |joint: &Node| {
@@ -66,18 +59,18 @@ pub fn mimics(text: &str) -> Vec<Mimic> {
     joints.iter().filter_map(of_joint).collect()
 }
 
-fn link(element: Element, density: f64) -> Result<LinkInFile, At> {
+fn link(element: Element, density: f64) -> Result<FileLink, At> {
     let name = element.attribute("name")?;
-    let inertial = element.optional("inertial")?.map(|inertial| -> Result<Inertial, At> {
+    let inertial = element.optional("inertial")?.map(|inertial| -> Result<FileInertial, At> {
         let place = origin(inertial)?;
         let (mass, inertia) = Link::mass_and_tensor(inertial)?;
-        Ok(Inertial { mass, com: place.translation, rotation: place.rotation, inertia })
+        Ok(FileInertial { mass, com: place.translation, rotation: place.rotation, inertia })
     });
-    Ok(LinkInFile { name: name.to_owned(), inertial: inertial.transpose()?, solids: solids(element, density)? })
+    Ok(FileLink { name: name.to_owned(), inertial: inertial.transpose()?, solids: solids(element, density)? })
 }
 
 /// All collision geometry of a link together.
-fn solids(link: Element, density: f64) -> Result<Option<Inertial>, At> {
+fn solids(link: Element, density: f64) -> Result<Option<FileInertial>, At> {
     let mut whole = RigidBodyInertia::zero();
     for node in link.node.children().filter(|node| node.has_tag_name("collision")) {
         let collision = Element { node, ..link };
@@ -92,7 +85,7 @@ fn solids(link: Element, density: f64) -> Result<Option<Inertial>, At> {
     Ok((whole.mass > 0.0).then(|| {
         let com = whole.com();
         let about_com = (whole.rotational + Sym3::point_mass(-whole.mass, com)).to_array();
-        Inertial { mass: whole.mass, com: com.to_array(), rotation: Placement::default().rotation, inertia: about_com }
+        FileInertial { mass: whole.mass, com: com.to_array(), rotation: Placement::default().rotation, inertia: about_com }
     }))
 }
 
@@ -109,10 +102,11 @@ fn of_shape(shape: Element) -> Result<Option<Solid>, At> {
 
 #[cfg(test)]
 mod tests {
-    use super::links;
+    use crate::urdf::{FileLink, Parsed};
 
-    fn one(inside: &str) -> super::LinkInFile {
-        links(&format!(r#"<robot name="r"><link name="a">{inside}</link></robot>"#), 1000.0).remove(0)
+    fn one(inside: &str) -> FileLink {
+        let text = format!(r#"<robot name="r"><link name="a">{inside}</link></robot>"#);
+        Parsed::of(text.as_bytes(), "r.urdf").unwrap().links(1000.0).remove(0)
     }
 
     fn collision(origin: &str, shape: &str) -> String {

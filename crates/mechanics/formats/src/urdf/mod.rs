@@ -32,11 +32,12 @@ mod write;
 mod xml;
 
 pub use error::{UrdfError, UrdfProblem};
-pub use links::{Inertial, LinkInFile, Mimic, links, mimics};
+pub use links::{FileInertial, FileLink, Mimic};
 pub use write::{to_string, write};
 
-use crate::text;
+use crate::{TextError, text};
 use featherbench_model::{Description, Warning};
+use roxmltree::Document;
 use std::fmt;
 use std::path::Path;
 
@@ -88,10 +89,8 @@ impl fmt::Display for Note {
 pub fn read(path: impl AsRef<Path>, options: &Options) -> Result<(Description, Vec<Note>), UrdfError> {
     let path = path.as_ref();
     let file = path.display().to_string();
-    match text::read(path, LIMIT) {
-        Ok(text) => import(&text, &file, options),
-        Err(error) => Err(UrdfError::new(file, None, error)),
-    }
+    let text = text::read(path, LIMIT).map_err(|problem| unplaced(&file, problem))?;
+    import(&text, &file, options)
 }
 
 /// Imports URDF from a text; `file` is its name in errors.
@@ -99,21 +98,62 @@ pub fn read(path: impl AsRef<Path>, options: &Options) -> Result<(Description, V
 /// # Errors
 /// [`UrdfError`], naming file, line, column and the link or joint.
 pub fn import(text: &str, file: &str, options: &Options) -> Result<(Description, Vec<Note>), UrdfError> {
-    let text = text::check(text, LIMIT).map_err(|problem| UrdfError::new(file, None, problem))?;
-    let read = || -> Result<_, error::At> {
-        let document = xml::parse(text)?;
+    Parsed::of(text.as_bytes(), file)?.import(options)
+}
+
+/// A URDF text that is parsed once, and then asked for the robot and for what the file says link by link.
+pub struct Parsed<'a> {
+    text: &'a str,
+    file: &'a str,
+    document: Document<'a>,
+}
+
+impl<'a> Parsed<'a> {
+    /// Parses the content of a file; `file` is its name in errors.
+    ///
+    /// # Errors
+    /// [`UrdfError`], when it is no XML in UTF-8 or too large.
+    pub fn of(bytes: &'a [u8], file: &'a str) -> Result<Self, UrdfError> {
+        let text = text::of_bytes(bytes, LIMIT).and_then(|text| text::check(text, LIMIT));
+        let text = text.map_err(|problem| unplaced(file, problem))?;
+        let document = xml::parse(text).map_err(|error| placed(text, file, error))?;
+        Ok(Self { text, file, document })
+    }
+
+    /// The robot: a canonical description, and notes in the order of the file.
+    ///
+    /// # Errors
+    /// [`UrdfError`], naming file, line, column and the link or joint.
+    pub fn import(&self, options: &Options) -> Result<(Description, Vec<Note>), UrdfError> {
         let mut notes = Vec::new();
-        let robot = elements::Robot::read(&document, options, &mut notes)?;
-        let description = tree::assemble(&robot, options, &mut notes)?;
+        let robot = elements::Robot::read(&self.document, options, &mut notes);
+        let description = robot.and_then(|robot| tree::assemble(&robot, options, &mut notes));
+        let description = description.map_err(|error| placed(self.text, self.file, error))?;
         notes.sort_by_key(|note| note.offset);
-        Ok((description, notes))
-    };
-    let (description, notes) = read().map_err(|error::At { offset, problem }| {
-        let of_parser = if let UrdfProblem::Xml { position, .. } = &problem { Some(*position) } else { None };
-        let position = offset.map(|offset| text::position(text, offset)).or(of_parser);
-        UrdfError::new(file, position, problem)
-    })?;
-    let lines = text::Lines::new(text);
-    let note = |note: error::NoteAt| Note { line: lines.line(note.offset), text: note.text, warning: note.warning };
-    Ok((description, notes.into_iter().map(note).collect()))
+        let lines = text::Lines::new(self.text);
+        let note = |note: error::NoteAt| Note { line: lines.line(note.offset), text: note.text, warning: note.warning };
+        Ok((description, notes.into_iter().map(note).collect()))
+    }
+
+    /// The links in the order of the file, with their collision geometry at a density (kg/m³). A file whose links have an error has none.
+    pub fn links(&self, density: f64) -> Vec<FileLink> {
+        links::links(&self.document, density)
+    }
+
+    /// The mimics in the order of the file.
+    pub fn mimics(&self) -> Vec<Mimic> {
+        links::mimics(&self.document)
+    }
+}
+
+/// A problem of a whole file.
+fn unplaced(file: &str, problem: TextError) -> UrdfError {
+    UrdfError::new(file, None, problem)
+}
+
+/// A problem at its place in a text.
+fn placed(text: &str, file: &str, error::At { offset, problem }: error::At) -> UrdfError {
+    let of_parser = if let UrdfProblem::Xml { position, .. } = &problem { Some(*position) } else { None };
+    let position = offset.map(|offset| text::position(text, offset)).or(of_parser);
+    UrdfError::new(file, position, problem)
 }

@@ -1,7 +1,6 @@
 //! What kind of file a robot comes in, told by its content, with advice where it is none that engines read.
 
-use crate::fail::Fail;
-use featherbench_bench::{FileBase, FileFormat, RobotFile};
+use crate::{FileContent, FileFormat, HarnessError};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -13,15 +12,18 @@ const HEAD: u64 = 1 << 20;
 /// Elements within each other, as `oracles/featherbench_oracles/examination.py` has it.
 const DEEPEST: usize = 500;
 
-/// Recognises a robot's file.
-pub fn open(path: &Path, floating: bool) -> Result<RobotFile, Fail> {
-    let format = format(path).map_err(|robot| Fail::input(format!("{}: {robot}", path.display())))?;
-    // An MJCF says itself what floats.
-    let base = if floating && format == FileFormat::Urdf { FileBase::Free } else { FileBase::Fixed };
-    Ok(RobotFile::open(path, format, base)?)
+impl FileContent {
+    /// Reads a robot's file and recognises its format.
+    ///
+    /// # Errors
+    /// [`HarnessError::Config`] with advice, when engines do not read such a file.
+    pub fn recognised(path: &Path) -> Result<Self, HarnessError> {
+        let recognised = recognised(path).map_err(|message| HarnessError::Config { path: path.to_owned(), message });
+        recognised.map(|(format, bytes)| Self { path: path.to_owned(), format, bytes })
+    }
 }
 
-fn format(path: &Path) -> Result<FileFormat, String> {
+fn recognised(path: &Path) -> Result<(FileFormat, Vec<u8>), String> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     if path.is_dir() {
         return Err("this is a folder; name the robot's URDF or MJCF file in it".into());
@@ -29,21 +31,35 @@ fn format(path: &Path) -> Result<FileFormat, String> {
     if MESHES.contains(&ending.as_str()) {
         return Err(format!("a .{ending} file holds a shape and no joints; name the URDF or MJCF file that uses it"));
     }
-    let mut head = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
-    read.map_err(|error| error.to_string())?;
-    if head.iter().all(u8::is_ascii_whitespace) {
-        return Err("the file is empty; name a URDF or MJCF file".into());
+    // What is no robot's file is not read to its end.
+    let mut bytes = Vec::new();
+    let mut file = File::open(path).map_err(|error| error.to_string())?;
+    file.by_ref().take(HEAD).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    if let Some(advice) = no_text(&bytes) {
+        return Err(advice);
     }
-    if let Some(encoding) = other_encoding(&head) {
-        return Err(format!(
+    let head = bytes.len();
+    file.read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    format(&bytes, head, &ending).map(|format| (format, bytes))
+}
+
+/// Advice about bytes that are no text in UTF-8.
+fn no_text(head: &[u8]) -> Option<String> {
+    if head.iter().all(u8::is_ascii_whitespace) {
+        return Some("the file is empty; name a URDF or MJCF file".into());
+    }
+    if let Some(encoding) = other_encoding(head) {
+        return Some(format!(
             "the file is {encoding}; engines read UTF-8: `iconv -f {encoding} -t UTF-8 FILE > robot.xml`, and let its XML declaration say UTF-8"
         ));
     }
-    if head.contains(&0) {
-        return Err("this is a binary file (a mesh, or a compiled model?); name the URDF or MJCF text that it was made from".into());
-    }
-    let text = String::from_utf8_lossy(&head);
+    let binary = "this is a binary file (a mesh, or a compiled model?); name the URDF or MJCF text that it was made from";
+    head.contains(&0).then(|| binary.into())
+}
+
+/// The format of a text, told by its head.
+fn format(bytes: &[u8], head: usize, ending: &str) -> Result<FileFormat, String> {
+    let text = String::from_utf8_lossy(&bytes[..head]);
     // What xacro wrote keeps the declaration of its names, and its macros in comments; a macro that is called must still be run.
     if ending == "xacro" || without_comments(&text).contains("<xacro:") {
         return Err("this is a xacro file, a program that writes URDF; run it first: `xacro FILE > robot.urdf`".into());
@@ -53,7 +69,8 @@ fn format(path: &Path) -> Result<FileFormat, String> {
                     (`xmllint --noent --dropdtd FILE > robot.xml`)"
             .into());
     }
-    let deepest = nesting(path)?;
+    // As far as it is well-formed: one pass over the tags, without a stack.
+    let deepest = depth(&without_comments(&String::from_utf8_lossy(bytes)));
     if deepest > DEEPEST {
         return Err(format!(
             "its elements are nested {deepest} deep; engines' parsers call themselves for each level and run out of stack, so the limit is {DEEPEST}: \
@@ -76,12 +93,7 @@ fn format(path: &Path) -> Result<FileFormat, String> {
     }
 }
 
-/// How deeply a file nests its elements, as far as it is well-formed: one pass over the tags, without a stack.
-fn nesting(path: &Path) -> Result<usize, String> {
-    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
-    Ok(depth(&without_comments(&String::from_utf8_lossy(&bytes))))
-}
-
+/// How deeply a text nests its elements.
 fn depth(text: &str) -> usize {
     let (mut depth, mut deepest) = (0_usize, 0);
     for tag in text.split('<').skip(1) {
