@@ -20,7 +20,7 @@ def test_conversions_are_those_of_the_oracles(engine, package, name, monkeypatch
     pytest.importorskip(package, reason=f"{package} is not installed")
     monkeypatch.syspath_prepend(str(ROOT / "oracles"))
     coordinates = import_module(f"featherbench_oracles.{engine}.coordinates")
-    read = import_module("featherbench_oracles.robot").Description.read
+    read = import_module("featherbench_oracles.core.robot").Description.read
     path = ROOT / "datasets" / "models" / f"{name}.json"
     robot, data = featherbench.Robot.from_json(path), json.loads(path.read_text())
     for body, joint in zip(data["bodies"], robot.joints, strict=True):
