@@ -21,9 +21,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from featherbench_oracles.clock import Stream
-from featherbench_oracles.protocol import State
-from featherbench_oracles.robot import JOINT_SIZES, Description
+from featherbench_oracles.core.clock import Stream
+from featherbench_oracles.core.protocol import State
+from featherbench_oracles.core.robot import JOINT_SIZES, Description
 from featherbench_oracles.testing.draws import random_states
 
 ROOT = Path(__file__).resolve().parent.parent

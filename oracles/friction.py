@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from featherbench_oracles.residual import serve_residual
+from featherbench_oracles.abilities.residual import serve_residual
 
 if __name__ == "__main__":
     serve_residual("friction", lambda _q, v, _a: 0.3 * v + 0.5 * np.tanh(v / 0.1))

@@ -69,7 +69,7 @@ def accessible(page: Browser, folder: pathlib.Path) -> Checks:
     kinds = ["index.html", *(f"sections/{path.name}" for path in sorted((folder / "sections").glob("*.html")))]
     kinds += [f"{kind}/{first.name}" for kind in ("engines", "robots", "studies") for first in sorted((folder / kind).glob("*.html"))[:1]]
     for theme, width in (("light", 1440), ("dark", 1440), ("light", 500)):
-        page.post("/window/rect", width=width, height=1000)
+        page.resize(width, 1000)
         page.prefer(theme)
         for kind in kinds:
             page.open((folder / kind).resolve().as_uri())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from typing import Any
 
 from browser.client import ARROW_DOWN, ARROW_RIGHT, ENTER, ESCAPE, Browser
 from browser.page import DRAWING, DRAWN, ROWS, Checks, Shot
@@ -98,17 +97,6 @@ def plots(page: Browser, shot: Shot) -> Checks:
         yield "the data of a drawing can be copied, or the browser forbids it", answered, ""
 
 
-def pointer(page: Browser, *steps: str | tuple[float, float]) -> None:
-    """Move the mouse to places on the screen, press (`down`) and let go (`up`)."""
-    actions: list[dict[str, Any]] = []
-    for step in steps:
-        if step == "down" or step == "up":
-            actions.append({"type": "pointerDown" if step == "down" else "pointerUp", "button": 0})
-        else:
-            actions.append({"type": "pointerMove", "duration": 30, "x": round(step[0]), "y": round(step[1])})  # type: ignore[arg-type]
-    page.post("/actions", actions=[{"type": "pointer", "id": "mouse", "actions": actions}])
-
-
 def drawing(page: Browser, box: str, shot: Shot) -> Checks:
     """Check what a drawing does under the mouse and the keyboard."""
     first = page.run(PLOT, box)
@@ -123,15 +111,15 @@ def drawing(page: Browser, box: str, shot: Shot) -> Checks:
 
     place = page.run(LONELY, box)
     x, y = place["mark"]
-    pointer(page, (x + 3, y - 3), (x, y))
+    page.point((x + 3, y - 3), (x, y))
     text = page.run(EXPLAINED, box)
     yield f"{box} explains the mark that is pointed at", len(text) > 5 and "undefined" not in text and "NaN" not in text, text
     shot(f"{box}-tip")
     left, top, right, bottom = place["edge"]
-    pointer(page, (left - 40, bottom + 30))
+    page.point((left - 40, bottom + 30))
     yield f"{box} explains nothing where no mark is", page.run(EXPLAINED, box) == "", ""
     if place["rows"]:
-        pointer(page, (x, y), "down", "up")
+        page.point((x, y), "down", "up")
         yield f"{box}: a click on a mark shows its rows", page.until(ROWS) > 0, place
         page.press(ESCAPE)
 
@@ -165,7 +153,7 @@ def drawing(page: Browser, box: str, shot: Shot) -> Checks:
         left, top, right, bottom = place["edge"]
         begin = (max(x - 60, left + 5), max(y - 50, top + 5))
         end = (min(x + 50, right - 5), min(y + 40, bottom - 5))
-        pointer(page, begin, "down", (x, y), end, "up")
+        page.point(begin, "down", (x, y), end, "up")
         zoomed = page.run(PLOT, box)
         good = zoomed["zoomed"] and 0 < zoomed["points"] <= first["points"] and zoomed["ticks"] != first["ticks"]
         yield f"{box}: a drawn rectangle zooms, and opens no rows", good and not page.run(ROWS), [zoomed["points"], zoomed["ticks"]]
@@ -177,7 +165,7 @@ def drawing(page: Browser, box: str, shot: Shot) -> Checks:
             page.run(DRAWING + "box.querySelector('.chart-back').click()", box)
         else:
             corner = (left - 40, bottom + 30)
-            pointer(page, corner, "down", "up", "down", "up")
+            page.point(corner, "down", "up", "down", "up")
         whole = page.run(PLOT, box)
         yield f"{box} is whole again after {way}", whole == first, [whole["zoomed"], whole["points"]]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pathlib
 
-from browser.client import ARROW_RIGHT, ELEMENT, Browser
+from browser.client import ARROW_RIGHT, Browser
 from browser.page import Checks, has, open_whole
 
 PLACES = "return [...document.querySelectorAll(`${arguments[0]} ellipse`)].map(body => body.getAttribute('transform')).join()"
@@ -54,16 +54,10 @@ def turning(page: Browser, where: str, figure: str) -> Checks:
     turned = page.run(PLACES, figure)
     yield f"{where}: an arrow key turns it", turned != first, turned
     page.run("document.querySelector(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})", picture)
-    origin = {ELEMENT: page.find(picture)}
-    steps = [
-        {"type": "pointerMove", "duration": 0, "origin": origin, "x": 0, "y": 0},
-        {"type": "pointerDown", "button": 0},
-        {"type": "pointerMove", "duration": 100, "origin": origin, "x": 60, "y": 20},
-        {"type": "pointerUp", "button": 0},
-    ]
-    page.post("/actions", actions=[{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": steps}])
+    drawing = page.find(picture)
+    page.point((0, 0), "down", (60, 20), "up", origin=drawing)
     dragged = page.run(PLACES, figure)
     yield f"{where}: dragging turns it", dragged != turned, dragged
-    page.post("/actions", actions=[{"type": "pointer", "id": "mouse", "actions": [{**steps[0], "x": 10}]}])
+    page.point((10, 0), origin=drawing)
     after = page.run(PLACES, figure)
     yield f"{where}: it stays when it is let go", after == dragged, after

@@ -317,7 +317,7 @@ def theme(page: Browser, address: str, shot: Shot, pictured: list[str]) -> Check
 
 def narrow(page: Browser, shot: Shot) -> Checks:
     """Check the page in a narrow window."""
-    page.post("/window/rect", width=390, height=844)
+    page.resize(390, 844)
     fits = page.until("return innerWidth < 600 && document.documentElement.scrollWidth <= innerWidth")
     widths = "return [document.documentElement.scrollWidth, innerWidth]"
     yield "a narrow window does not scroll sideways", fits, page.run(widths)

@@ -14,6 +14,7 @@ import json
 import os
 import sys
 import threading
+from typing import Any
 
 from hyperqueue.client import Client
 from hyperqueue.cluster import WorkerConfig
@@ -22,7 +23,7 @@ from hyperqueue.ffi.protocol import ResourceRequest
 from hyperqueue import Job, LocalCluster
 
 
-def tell(**message) -> None:
+def tell(**message: Any) -> None:
     """Writes one line of JSON."""
     print(json.dumps(message), flush=True)
 
@@ -33,10 +34,10 @@ def end_with_the_caller() -> None:
     os._exit(1)
 
 
-def job_of(wanted: dict) -> Job:
+def job_of(wanted: dict[str, Any]) -> Job:
     """The tasks as one job. No failure cancels the others."""
     job = Job(max_fails=None, name="featherbench sweep")
-    before = []
+    before: list[Any] = []
     for task in wanted["tasks"]:
         alone = task["alone"]
         started = job.program(
@@ -55,7 +56,7 @@ def job_of(wanted: dict) -> Job:
     return job
 
 
-def drive(wanted: dict) -> None:
+def drive(wanted: dict[str, Any]) -> None:
     """Submits the tasks and waits for them."""
     with contextlib.ExitStack() as stack:
         if wanted["server"] is None:
@@ -68,7 +69,7 @@ def drive(wanted: dict) -> None:
         job = job_of(wanted)
         submitted = client.submit(job)
 
-        def progress(jobs: dict) -> None:
+        def progress(jobs: dict[int, Any]) -> None:
             for now in jobs.values():
                 tell(finished=now["finished"], failed=now["failed"], total=now["total"])
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.reading import turned
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.reading import turned
 
 LINK = """<link name="{name}"><inertial><origin xyz="{com}" rpy="{rpy}"/><mass value="{mass}"/>
 <inertia ixx=".02" iyy=".03" izz=".04" ixy=".001" ixz=".002" iyz=".003"/></inertial></link>"""

@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Header
-from featherbench_oracles.reading import turned
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.reading import turned
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.testing.client import Oracle
 from featherbench_oracles.testing.described import ENGINES
 from featherbench_oracles.testing.draws import random_states

@@ -10,10 +10,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Blocks
-from featherbench_oracles.protocol import DERIVATIVES, SHAPES
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Blocks
+from featherbench_oracles.core.protocol import DERIVATIVES, SHAPES
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.testing.draws import derivative
 from featherbench_oracles.testing.measures import DIFFERENCE, EXACT, INVERSE, ratio, residual, within
 

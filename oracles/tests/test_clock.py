@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.change import CoordinateChange
-from featherbench_oracles.clock import Measured, Stream, TimedCalls
-from featherbench_oracles.messages import Blocks, Header
-from featherbench_oracles.protocol import Quantities, State, Unsupported
-from featherbench_oracles.robot import Description
-from featherbench_oracles.session import Session
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.change import CoordinateChange
+from featherbench_oracles.core.clock import Measured, Stream, TimedCalls
+from featherbench_oracles.core.messages import Blocks, Header
+from featherbench_oracles.core.protocol import Quantities, State, Unsupported
+from featherbench_oracles.core.robot import Description
+from featherbench_oracles.core.session import Session
 from featherbench_oracles.testing.client import Oracle
 from featherbench_oracles.testing.described import ENGINES
 from featherbench_oracles.testing.draws import COUNT, random_robot, random_states, without_armature

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.contact_steps import StepMethod, StepsOnContacts
-from featherbench_oracles.messages import Blocks, Header
-from featherbench_oracles.protocol import Unsupported
+from featherbench_oracles.abilities.contact_steps import StepMethod, StepsOnContacts
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Blocks, Header
+from featherbench_oracles.core.protocol import Unsupported
 
 from .conftest import Oracles
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from featherbench_oracles.contacts import Contacts, ContactSolver
-from featherbench_oracles.messages import Blocks, Header
-from featherbench_oracles.protocol import Unsupported
+from featherbench_oracles.abilities.contacts import Contacts, ContactSolver
+from featherbench_oracles.core.messages import Blocks, Header
+from featherbench_oracles.core.protocol import Unsupported
 
 from .conftest import Oracles
 

@@ -11,7 +11,7 @@ from importlib import import_module
 
 import pytest
 
-from featherbench_oracles.conventions import Claim, Convention, claim
+from featherbench_oracles.core.conventions import Claim, Convention, claim
 from featherbench_oracles.testing.client import HOME
 from featherbench_oracles.testing.described import ENGINES
 

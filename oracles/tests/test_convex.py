@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Blocks, Header
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.semidefinite import SemidefiniteLeastSquares, problem
+from featherbench_oracles.abilities.semidefinite import SemidefiniteLeastSquares, problem
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Blocks, Header
+from featherbench_oracles.core.protocol import Unsupported
 from featherbench_oracles.testing.client import Oracle
 
 ALONE = Path(__file__).parents[2] / "target/oracles/clarabel/venv/bin/python"

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Blocks
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Blocks
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.testing.client import Oracle
 from featherbench_oracles.testing.draws import advance, random_robot, random_states
 from featherbench_oracles.testing.measures import within

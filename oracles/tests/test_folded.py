@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Header
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.testing.client import Oracle
 from featherbench_oracles.testing.draws import COUNT, random_robot, random_states
 from featherbench_oracles.testing.measures import EXACT, INVERSE, ratio, within

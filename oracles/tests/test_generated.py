@@ -10,9 +10,9 @@ import pytest
 
 from featherbench_oracles.adam.coordinates import base_transform
 from featherbench_oracles.adam.urdf import roll_pitch_yaw, text
-from featherbench_oracles.algebra import Array, rotation
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.algebra import Array, rotation
+from featherbench_oracles.core.protocol import Unsupported
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.testing.draws import random_robot, without_armature
 
 

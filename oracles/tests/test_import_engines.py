@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from featherbench_oracles.messages import Header
-from featherbench_oracles.reading import overheard
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.reading import overheard
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.testing.draws import random_states
 from featherbench_oracles.testing.measures import EXACT, ratio, within
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.testing.draws import COUNT, random_states
 
 from . import files

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Header
-from featherbench_oracles.reading import Place
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.reading import Place
 from featherbench_oracles.testing.measures import within
 
 from .conftest import Oracles, require

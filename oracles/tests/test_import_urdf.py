@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from featherbench_oracles.algebra import Array
+from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.testing.described import ENGINES
 
 from . import files

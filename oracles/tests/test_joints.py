@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from featherbench_oracles.algebra import rotation, skew
-from featherbench_oracles.closed_forms import placement
-from featherbench_oracles.messages import Blocks, Header
-from featherbench_oracles.robot import JOINT_SIZES, Description
+from featherbench_oracles.core.algebra import rotation, skew
+from featherbench_oracles.core.closed_forms import placement
+from featherbench_oracles.core.messages import Blocks, Header
+from featherbench_oracles.core.robot import JOINT_SIZES, Description
 from featherbench_oracles.testing.described import ENGINES
 from featherbench_oracles.testing.draws import random_robot, random_states, without_armature
 from featherbench_oracles.testing.measures import EXACT, ratio, within

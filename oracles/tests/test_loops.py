@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from featherbench_oracles.algebra import Array
+from featherbench_oracles.abilities.loops import LoopMethods, Loops
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Blocks, Header
+from featherbench_oracles.core.protocol import Unsupported
 from featherbench_oracles.dart.coordinates import exponential, log
-from featherbench_oracles.loops import Loops
-from featherbench_oracles.messages import Blocks, Header
-from featherbench_oracles.protocol import Unsupported
 
 from .conftest import Oracles
 
@@ -242,9 +243,9 @@ def test_wrong_springs_are_refused(change: Header, says: str) -> None:
     drive = _sprung()
     drive["springs"][0] |= change
     with pytest.raises(ValueError, match=says):
-        Loops(_Anybody()).prepare({"model": _four_bar(), "drive": {**drive, "tau": [0.0] * 3}}, {})
+        Loops("anybody", ANYBODY).prepare({"model": _four_bar(), "drive": {**drive, "tau": [0.0] * 3}}, {})
     with pytest.raises(ValueError, match="tau"):
-        Loops(_Anybody()).prepare({"model": _four_bar(), "drive": drive}, {})
+        Loops("anybody", ANYBODY).prepare({"model": _four_bar(), "drive": drive}, {})
 
 
 def test_rotation_vectors_come_back() -> None:
@@ -256,22 +257,12 @@ def test_rotation_vectors_come_back() -> None:
         assert np.abs(log(exponential(turn)) - turn).max() < 1e-14
 
 
-class _Nobody:
-    """An engine that holds nothing."""
+def _any(*_: object) -> Any:
+    """Hold anything."""
+    return object()
 
-    name = "nobody"
 
-
-class _Anybody(_Nobody):
-    """An engine that would hold anything."""
-
-    loop_accelerations = ("any",)
-    loop_motions = ("any",)
-
-    @staticmethod
-    def loop_mechanics(*_: object) -> Any:
-        """Hold it."""
-        return object()
+ANYBODY = LoopMethods(_any, ("any",), ("any",))
 
 
 @pytest.mark.parametrize(
@@ -289,7 +280,7 @@ def test_wrong_loops_are_refused(change: Header, error: type[Exception], says: s
     model = _four_bar()
     model["loops"][0] |= change
     with pytest.raises(error, match=says):
-        Loops(_Anybody()).prepare({"model": model}, {})
+        Loops("anybody", ANYBODY).prepare({"model": model}, {})
 
 
 @pytest.mark.parametrize(
@@ -305,19 +296,18 @@ def test_wrong_loops_are_refused(change: Header, error: type[Exception], says: s
 )
 def test_wrong_ties_are_refused(kind: str, change: Header, error: type[Exception], says: str) -> None:
     """A tie that cannot be held is named."""
-    holder = _Anybody()
-    holder.loop_types = {kind: "anything"}  # type: ignore[attr-defined]
+    holder = replace(ANYBODY, types={kind: "anything"})
     model, _ = _tied(kind)
     model["loops"][0] |= change
     with pytest.raises(error, match=says):
-        Loops(holder).prepare({"model": model}, {})
+        Loops("anybody", holder).prepare({"model": model}, {})
 
 
 def test_wrong_questions_are_refused() -> None:
     """Methods that are not offered are unsupported; blocks and steps without sense are errors."""
     with pytest.raises(Unsupported, match="nobody"):
-        Loops(_Nobody()).prepare({"model": _four_bar()}, {})
-    loops = Loops(_Anybody())
+        Loops("nobody", None).prepare({"model": _four_bar()}, {})
+    loops = Loops("anybody", ANYBODY)
     good: Blocks = {"q": np.zeros((1, 3)), "v": np.zeros((1, 3)), "tau": np.zeros((1, 3))}
     with pytest.raises(ValueError, match="no robot with loops"):
         loops.accelerations({"method": "any", "count": 1}, good)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from featherbench_oracles.messages import Blocks, Header
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.residual import Residual, ResidualEngine
-from featherbench_oracles.session import Session
+from featherbench_oracles.abilities.residual import Residual, ResidualEngine
+from featherbench_oracles.core.messages import Blocks, Header
+from featherbench_oracles.core.protocol import Unsupported
+from featherbench_oracles.core.session import Session
 
 ROD = {
     "name": "rod",

@@ -7,10 +7,10 @@ from importlib import import_module
 import numpy as np
 import pytest
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.inextensible import nodes, on_angles, straight_mass
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.rods import Rods
+from featherbench_oracles.abilities.inextensible import nodes, on_angles, straight_mass
+from featherbench_oracles.abilities.rods import Rods
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.protocol import Unsupported
 
 FIRST = 1.875104068711961**2
 COUNT = 12

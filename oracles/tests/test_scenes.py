@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from featherbench_oracles.messages import Header
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.scenes import Derivative, DerivativeVariant, Motion, Scene, Scenes, Stepping, Variant, read
+from featherbench_oracles.abilities.scenes import Derivative, DerivativeVariant, Motion, Scene, Scenes, Stepping, Variant, read
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.protocol import Unsupported
 
 from .conftest import Oracles
 

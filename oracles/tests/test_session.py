@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import NoReturn
+
 import numpy as np
 import pytest
 
-from featherbench_oracles.messages import Answer, Header
-from featherbench_oracles.robot import Description
+from featherbench_oracles.abilities.rods import RodTable
+from featherbench_oracles.core.messages import Answer, Header
+from featherbench_oracles.core.protocol import Quantities, Unsupported
+from featherbench_oracles.core.robot import Description
+from featherbench_oracles.core.session import Session
 from featherbench_oracles.testing.client import Oracle
 from featherbench_oracles.testing.described import ENGINES, PACKAGES
 from featherbench_oracles.testing.draws import COUNT, random_robot, random_states, without_armature
@@ -140,7 +145,7 @@ def test_an_oracle_ends_with_its_input(engine: str) -> None:
 
 NOISY = """
 import os
-from featherbench_oracles.session import serve
+from featherbench_oracles.core.session import serve
 class Engine:
     name = version = "noisy"
     build = quantities = {}
@@ -156,6 +161,32 @@ def test_noise_is_kept_out_of_answers() -> None:
     assert status_of(oracle.ask(PREPARE)) == "error"
     assert status_of(oracle.ask({"op": "hello"})) == "ok"
     oracle.end()
+
+
+class Stranger:
+    """An engine that inherits from no protocol."""
+
+    name = version = "stranger"
+    build = {"language": "Python"}
+    quantities: Quantities = {}
+    rods: RodTable = {"any": lambda _: pytest.fail("nothing is made of a wrong question")}
+
+    def prepare(self, description: Description) -> NoReturn:
+        """Refuse the robot."""
+        raise Unsupported(description.name)
+
+
+def test_an_engine_has_the_abilities_of_its_members() -> None:
+    """A base class is not asked for; what the engine has no members of is not offered, and unsupported."""
+    session = Session(Stranger())
+    hello, _ = session.answer({"op": "hello"}, {})
+    assert set(hello) == {"protocol", "engine", "version", "build", "methods", "rods"}
+    assert hello["rods"] == ["any"]
+    for lacking in ({"op": "rod", "method": "other"}, {"op": "residual"}, {"op": "loops", "model": GOOD}):
+        with pytest.raises(Unsupported, match="stranger"):
+            session.answer(lacking, {})
+    with pytest.raises(Unsupported, match="reads no files"):
+        session.answer({"op": "import", "format": "urdf", "file": "none.urdf"}, {})
 
 
 @pytest.mark.parametrize(("text", "scale"), [("1", 1.0), ("0", 0.0), (" 1e3 ", 1000.0)])

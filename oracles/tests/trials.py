@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Blocks, Header
-from featherbench_oracles.protocol import DERIVATIVES
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Blocks, Header
+from featherbench_oracles.core.protocol import DERIVATIVES
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.testing.client import Methods, Oracle
 from featherbench_oracles.testing.draws import COUNT, random_robot, random_states, without_armature
 from featherbench_oracles.testing.measures import Reference

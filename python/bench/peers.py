@@ -70,7 +70,7 @@ def of(path: Path, robot: featherbench.Robot, states: tuple[Array, Array, Array,
 
 
 def _description(path: Path, robot: featherbench.Robot) -> Any:
-    from featherbench_oracles.robot import Description
+    from featherbench_oracles.core.robot import Description
 
     data = json.loads(path.read_text())
     for body, joint in zip(data["bodies"], robot.joints, strict=True):

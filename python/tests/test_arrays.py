@@ -1,23 +1,28 @@
 """Shapes, dtypes, strides, threads and what is refused."""
 
 import threading
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import featherbench
+
+Doubles = NDArray[np.float64]
 
 ROBOT = featherbench.Robot.generated("humanoid")
 NQ, NV = ROBOT.nq, ROBOT.nv
 
 
-def states(count):
+def states(count: int) -> tuple[Doubles, Doubles, Doubles]:
     rng = np.random.default_rng(2)
     return ROBOT.random(seed=2, states=count), *rng.uniform(-1, 1, (2, count, NV))
 
 
-def test_a_batch_has_the_results_of_its_states():
+def test_a_batch_has_the_results_of_its_states() -> None:
     q, v, a = states(200)
     for quantity in (ROBOT.inverse_dynamics, ROBOT.forward_dynamics):
         one_by_one = np.array([quantity(*state) for state in zip(q, v, a, strict=True)])
@@ -27,7 +32,7 @@ def test_a_batch_has_the_results_of_its_states():
     assert np.array_equal(ROBOT.mass_matrix(q), one_by_one)
 
 
-def test_threads_change_no_bit():
+def test_threads_change_no_bit() -> None:
     q, v, a = states(333)
     for threads in (2, 3, None):
         assert np.array_equal(ROBOT.inverse_dynamics(q, v, a), ROBOT.inverse_dynamics(q, v, a, threads=threads))
@@ -36,7 +41,7 @@ def test_threads_change_no_bit():
         ROBOT.inverse_dynamics(q, v, a, threads=0)
 
 
-def test_single_precision():
+def test_single_precision() -> None:
     q, v, a = (x.astype(np.float32) for x in states(40))
     tau = ROBOT.inverse_dynamics(q, v, a)
     assert tau.dtype == np.float32
@@ -45,17 +50,22 @@ def test_single_precision():
     assert np.allclose(ROBOT.inverse_dynamics(q[0], v[0], a[0]), tau[0], rtol=1e-5, atol=1e-5)
 
 
-def test_strides_and_orders_have_the_same_results():
+def test_strides_and_orders_have_the_same_results() -> None:
     q, v, a = states(20)
     tau = ROBOT.inverse_dynamics(q, v, a)
-    for change in (np.asfortranarray, lambda x: np.repeat(x, 2, axis=0)[::2], lambda x: np.hstack([x, x])[:, : x.shape[1]]):
+    changes: list[Callable[[Doubles], Doubles]] = [
+        np.asfortranarray,
+        lambda x: np.repeat(x, 2, axis=0)[::2],
+        lambda x: np.hstack([x, x])[:, : x.shape[1]],
+    ]
+    for change in changes:
         assert np.array_equal(ROBOT.inverse_dynamics(change(q), change(v), change(a)), tau)
     assert np.array_equal(ROBOT.inverse_dynamics(q[::-1], v[::-1], a[::-1]), tau[::-1])
     q.flags.writeable = False
     assert np.array_equal(ROBOT.inverse_dynamics(q, v, a), tau)
 
 
-def test_out_is_written():
+def test_out_is_written() -> None:
     q, v, a = states(20)
     out = np.empty_like(v)
     assert ROBOT.inverse_dynamics(q, v, a, out=out) is out
@@ -73,10 +83,10 @@ def test_out_is_written():
 
 
 @pytest.mark.parametrize("name", ["q", "v", "a"])
-def test_what_is_refused_is_named(name):
+def test_what_is_refused_is_named(name: str) -> None:
     good = dict(zip("qva", states(3), strict=True))
 
-    def refused(error, text, value):
+    def refused(error: type[Exception], text: str, value: Any) -> None:
         with pytest.raises(error, match=text):
             ROBOT.inverse_dynamics(**{**good, name: value})
 
@@ -97,7 +107,7 @@ def test_what_is_refused_is_named(name):
         ROBOT.inverse_dynamics(**{**one, name: bad[1]})
 
 
-def test_a_quaternion_of_zeros_is_refused():
+def test_a_quaternion_of_zeros_is_refused() -> None:
     q = ROBOT.neutral()
     q[3:7] = 0
     zero = np.zeros(NV)
@@ -107,17 +117,17 @@ def test_a_quaternion_of_zeros_is_refused():
         ROBOT.inverse_dynamics(q[None], zero[None], zero[None])
 
 
-def test_no_states_are_no_error():
+def test_no_states_are_no_error() -> None:
     q, v, a = states(0)
     assert ROBOT.inverse_dynamics(q, v, a).shape == (0, NV)
     assert ROBOT.mass_matrix(q).shape == (0, NV, NV)
 
 
-def test_one_robot_serves_many_threads():
+def test_one_robot_serves_many_threads() -> None:
     q, v, a = states(64)
     due, found = ROBOT.inverse_dynamics(q, v, a), {}
 
-    def work(k):
+    def work(k: int) -> None:
         found[k] = [ROBOT.inverse_dynamics(q, v, a) for _ in range(20)] + [ROBOT.mass_matrix(q[k])]
 
     workers = [threading.Thread(target=work, args=(k,)) for k in range(4)]
@@ -131,7 +141,7 @@ def test_one_robot_serves_many_threads():
         assert np.array_equal(matrix, ROBOT.mass_matrix(q[k]))
 
 
-def test_files_and_names():
+def test_files_and_names() -> None:
     with pytest.raises(featherbench.Error, match=r"no_such\.urdf"):
         featherbench.Robot.from_urdf(Path("no_such.urdf"))
     with pytest.raises(featherbench.Error, match="there is no body or frame 'hand'"):
@@ -141,7 +151,7 @@ def test_files_and_names():
     assert [joint.body for joint in ROBOT.joints] == ROBOT.bodies
 
 
-def test_conversions_lead_back():
+def test_conversions_lead_back() -> None:
     q, v, tau = states(10)
     for to, back in [
         (ROBOT.to_pinocchio, ROBOT.from_pinocchio),
@@ -154,4 +164,4 @@ def test_conversions_lead_back():
         power = np.sum(ROBOT.velocity_to(engine, q, v) * ROBOT.force_to(engine, q, tau), axis=1)
         assert np.allclose(power, np.sum(v * tau, axis=1), atol=1e-13)
     with pytest.raises(featherbench.Error, match="engine is 'bullet'"):
-        ROBOT.velocity_to("bullet", q, v)
+        ROBOT.velocity_to("bullet", q, v)  # type: ignore[arg-type]

@@ -4,6 +4,7 @@ import doctest
 import inspect
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,38 +23,38 @@ FUNCTIONS = {
 CLASSES = [featherbench.Robot, featherbench.Joint, featherbench.Error]
 
 
-def section(text, name):
+def section(text: str, name: str) -> str:
     """Give the lines of a section, without its title; nothing if it is not there."""
     found = re.search(rf"^{name}\n-+\n(.*?)(?=^\w[\w ]*\n-+$|\Z)", inspect.cleandoc(text), re.MULTILINE | re.DOTALL)
     return found[1] if found else ""
 
 
-def ran(name, text):
+def ran(name: str, text: str) -> int:
     """Run the examples of a text. Give how many there were."""
     test = doctest.DocTestParser().get_doctest(text, {"featherbench": featherbench, "np": np, "find": _program.find}, name, None, 0)
-    runner, told = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS), []
+    runner, told = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS), list[str]()
     result = runner.run(test, out=told.append)
     assert result.failed == 0, "".join(told)
     return result.attempted
 
 
-def test_there_are_methods():
+def test_there_are_methods() -> None:
     assert len(METHODS) == 31
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_examples_run(name, monkeypatch):
+def test_examples_run(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(_program.VARIABLE, "no_such_file")
     assert ran(name, inspect.cleandoc(FUNCTIONS[name].__doc__)) > 0
 
 
-def test_an_example_that_is_wrong_fails():
+def test_an_example_that_is_wrong_fails() -> None:
     with pytest.raises(AssertionError, match="Expected"):
         ran("wrong", '>>> featherbench.Robot.generated("humanoid").nv\n35\n')
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_parameters_are_named(name):
+def test_parameters_are_named(name: str) -> None:
     function = FUNCTIONS[name]
     parameters = [key for key in inspect.signature(function).parameters if key != "self"]
     heads = re.findall(r"^\*?(\w+(?:, \w+)*) : \S", section(function.__doc__, "Parameters"), re.MULTILINE)
@@ -64,7 +65,7 @@ def test_parameters_are_named(name):
 
 
 @pytest.mark.parametrize("name", METHODS)
-def test_arrays_have_shapes_and_units(name):
+def test_arrays_have_shapes_and_units(name: str) -> None:
     text = FUNCTIONS[name].__doc__
     for part in ("Parameters", "Returns"):
         for head, body in re.findall(r"^(\S.*\bndarray.*|ndarray.*)\n((?:    .*\n?)+)", section(text, part), re.MULTILINE):
@@ -75,17 +76,17 @@ def test_arrays_have_shapes_and_units(name):
 
 
 @pytest.mark.parametrize("item", CLASSES)
-def test_properties_are_documented(item):
+def test_properties_are_documented(item: type) -> None:
     assert item.__doc__
     for name, value in vars(item).items():
         if inspect.isgetsetdescriptor(value) and not name.startswith("_"):
             assert value.__doc__, name
 
 
-def test_the_readme_runs(monkeypatch):
+def test_the_readme_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(Path(__file__).parents[2] / "guide")  # where arm.urdf is
     (block,) = re.findall(r"^```python\n(.*?)^```", README.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
-    names = {}
+    names: dict[str, Any] = {}
     exec(compile(block, str(README), "exec"), names)
     assert names["tau"].shape == (100_000, names["robot"].nv)
     assert names["j"].shape == (6, names["robot"].nv)

@@ -5,6 +5,7 @@ import shutil
 import subprocess
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,27 +18,27 @@ STATE = np.array([[0.3, -0.5, 0.1], [1.0, 0.5, -0.2], [0.2, 0.4, 0.6]])
 SHOULDER = re.compile(r"the shoulder needs (-?\d+\.\d{9}) N m")
 
 
-def pages():
+def pages() -> list[Path]:
     found = sorted(GUIDE.glob("*.md"))
     assert len(found) >= 8
     return found
 
 
 @pytest.mark.parametrize("page", pages(), ids=lambda page: page.stem)
-def test_every_block_of_python_runs(page, monkeypatch):
+def test_every_block_of_python_runs(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(GUIDE)
-    names = {}
+    names: dict[str, Any] = {}
     for block in re.findall(r"^```python\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE):
         exec(compile(block, page.name, "exec"), names)
 
 
-def shoulder():
+def shoulder() -> float:
     pin = pytest.importorskip("pinocchio", reason="pinocchio is not installed")
     model = pin.buildModelFromUrdf(str(GUIDE / "arm.urdf"))
-    return pin.rnea(model, model.createData(), *STATE)[0]
+    return float(pin.rnea(model, model.createData(), *STATE)[0])
 
 
-def test_ten_lines_of_python_end_in_the_number_of_pinocchio(monkeypatch, capsys):
+def test_ten_lines_of_python_end_in_the_number_of_pinocchio(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     due = shoulder()
     monkeypatch.chdir(GUIDE)
     block = re.search(r"^```python\n(.*?)^```", (GUIDE / "python.md").read_text(), re.DOTALL | re.MULTILINE)
@@ -50,7 +51,7 @@ def test_ten_lines_of_python_end_in_the_number_of_pinocchio(monkeypatch, capsys)
     assert abs(float(printed[1]) - due) <= 0.51e-9
 
 
-def test_ten_lines_of_rust_end_in_the_number_of_pinocchio():
+def test_ten_lines_of_rust_end_in_the_number_of_pinocchio() -> None:
     due = shoulder()
     if shutil.which("cargo") is None:
         pytest.skip("cargo is not installed")
@@ -63,7 +64,7 @@ def test_ten_lines_of_rust_end_in_the_number_of_pinocchio():
     assert printed[1] == told[1]
 
 
-def tables():
+def tables() -> list[tuple[str, str, str]]:
     text = (GUIDE / "coming-from.md").read_text()
     rows = re.findall(r"^\| `([\w.]+)` \| `(\w+)` \| `(\w+)` \|", text, re.MULTILINE)
     assert len(rows) >= 30
@@ -71,7 +72,7 @@ def tables():
 
 
 @pytest.mark.parametrize(("theirs", "python", "rust"), tables(), ids=lambda name: name)
-def test_the_names_in_the_tables_exist(theirs, python, rust):
+def test_the_names_in_the_tables_exist(theirs: str, python: str, rust: str) -> None:
     assert hasattr(featherbench.Robot, python)
     sources = "".join(path.read_text() for path in (ROOT / "crates" / "mechanics" / "rbd" / "src").glob("*.rs"))
     assert re.search(rf"pub fn {rust}\b", sources)

@@ -3,12 +3,14 @@
 import json
 from importlib import import_module
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
 
 import featherbench
 
+Engine = Literal["pinocchio", "mujoco", "drake"]
 ROOT = Path(__file__).parents[2]
 # Quaternions of length one and angles of size one: a few roundings, and Drake's arc tangents near ±90° of pitch.
 TOLERANCE = 1e-12
@@ -16,11 +18,11 @@ TOLERANCE = 1e-12
 
 @pytest.mark.parametrize(("engine", "package"), [("pinocchio", "pinocchio"), ("mujoco", "mujoco"), ("drake", "pydrake")])
 @pytest.mark.parametrize("name", ["humanoid", "joints-common-fixed", "chain-spatial-12-free"])
-def test_conversions_are_those_of_the_oracles(engine, package, name, monkeypatch):
+def test_conversions_are_those_of_the_oracles(engine: Engine, package: str, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip(package, reason=f"{package} is not installed")
     monkeypatch.syspath_prepend(str(ROOT / "oracles"))
     coordinates = import_module(f"featherbench_oracles.{engine}.coordinates")
-    read = import_module("featherbench_oracles.robot").Description.read
+    read = import_module("featherbench_oracles.core.robot").Description.read
     path = ROOT / "datasets" / "models" / f"{name}.json"
     robot, data = featherbench.Robot.from_json(path), json.loads(path.read_text())
     for body, joint in zip(data["bodies"], robot.joints, strict=True):

@@ -17,12 +17,12 @@ def resident() -> int:
     return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
 
 
-def test_memory_does_not_grow():
+def test_memory_does_not_grow() -> None:
     robot = featherbench.Robot.generated("chain:n=7,layout=spatial")
     q, v, a = robot.random(seed=5), np.ones(7), np.ones(7)
     bad = np.full(7, np.nan)
 
-    def calls(count):
+    def calls(count: int) -> None:
         for _ in range(count):
             robot.inverse_dynamics(q, v, a)
             robot.mass_matrix(q)

@@ -15,17 +15,17 @@ PACKAGES = ROOT / "target" / "oracles" / "packages"
 TOLERANCE = 1e-13
 
 
-def files():
+def files() -> list[Path]:
     return sorted(PACKAGES.rglob("*.xml")) if PACKAGES.is_dir() else []
 
 
-def test_files_mean_what_mujoco_makes_of_them(monkeypatch, tmp_path):
+def test_files_mean_what_mujoco_makes_of_them(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     pytest.importorskip("mujoco", reason="mujoco is not installed")
     if not files():
         pytest.skip("the robots' packages are not installed")
     monkeypatch.syspath_prepend(str(ROOT / "oracles"))
     reading = import_module("featherbench_oracles.mujoco.reading")
-    read, refused, worst, file = 0, {}, {}, tmp_path / "held.json"
+    read, refused, worst, file = 0, dict[str, str](), dict[str, float](), tmp_path / "held.json"
     for path in files():
         try:
             robot = featherbench.Robot.from_mjcf(path)
@@ -51,7 +51,7 @@ def test_files_mean_what_mujoco_makes_of_them(monkeypatch, tmp_path):
     assert all(error <= TOLERANCE for error in worst.values()), worst
 
 
-def test_included_files_are_found_where_mujoco_finds_them(tmp_path):
+def test_included_files_are_found_where_mujoco_finds_them(tmp_path: Path) -> None:
     mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed")
     (tmp_path / "sub" / "sub").mkdir(parents=True)
     for name, text in {
@@ -62,7 +62,7 @@ def test_included_files_are_found_where_mujoco_finds_them(tmp_path):
     }.items():
         (tmp_path / name).write_text(text)
 
-    def masses():
+    def masses() -> tuple[float, float]:
         file = tmp_path / "main.xml"
         held = json.loads(featherbench.Robot.from_mjcf(file).to_json())
         return mujoco.MjModel.from_xml_path(str(file)).body_mass[1], held["bodies"][0]["mass"]

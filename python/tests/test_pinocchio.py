@@ -4,13 +4,19 @@ Joints of the file are in the order of their names, so the parser's order of dof
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import featherbench
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is not installed")
+
+Doubles = NDArray[np.float64]
+# The robot, Pinocchio's model, and random states of both.
+Pair = tuple[featherbench.Robot, Any, Doubles, Doubles, Doubles]
 
 URDF = Path(__file__).parents[2] / "guide" / "arm.urdf"
 STATES = 50
@@ -20,13 +26,13 @@ FORMED = 1e-12
 SOLVED = 1e-10
 
 
-def close(ours, theirs, tolerance):
+def close(ours: Doubles, theirs: Doubles, tolerance: float) -> None:
     assert ours.shape == theirs.shape
     assert np.all(np.abs(ours - theirs) <= tolerance * (1 + np.abs(theirs)))
 
 
 @pytest.fixture(params=[False, True], ids=["fixed", "floating"])
-def pair(request):
+def pair(request: pytest.FixtureRequest) -> Pair:
     """Give the robot, Pinocchio's model, and random states of both."""
     robot = featherbench.Robot.from_urdf(URDF, floating=request.param)
     joint = (pin.JointModelFreeFlyer(),) if request.param else ()
@@ -38,20 +44,20 @@ def pair(request):
     return robot, model, q, v, a
 
 
-def test_inverse_dynamics(pair):
+def test_inverse_dynamics(pair: Pair) -> None:
     robot, model, q, v, a = pair
     data = model.createData()
     close(robot.inverse_dynamics(q, v, a), np.array([pin.rnea(model, data, *state).copy() for state in zip(q, v, a, strict=True)]), FORMED)
 
 
-def test_forward_dynamics(pair):
+def test_forward_dynamics(pair: Pair) -> None:
     robot, model, q, v, tau = pair
     data = model.createData()
     theirs = np.array([pin.aba(model, data, *state).copy() for state in zip(q, v, tau, strict=True)])
     close(robot.forward_dynamics(q, v, tau), theirs, SOLVED)
 
 
-def test_mass_matrix_and_solution(pair):
+def test_mass_matrix_and_solution(pair: Pair) -> None:
     robot, model, q, _, b = pair
     data = model.createData()
     upper = np.triu(np.array([pin.crba(model, data, x).copy() for x in q]))
@@ -61,7 +67,7 @@ def test_mass_matrix_and_solution(pair):
 
 
 @pytest.mark.parametrize("frame", ["upper", "lower", "rail", "tool"])
-def test_placements_jacobians_and_motions(pair, frame):
+def test_placements_jacobians_and_motions(pair: Pair, frame: str) -> None:
     robot, model, q, v, a = pair
     data, index = model.createData(), model.getFrameId(frame)
     axes = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
@@ -79,7 +85,7 @@ def test_placements_jacobians_and_motions(pair, frame):
     close(robot.motion(q, v, a, frame), np.array(motions), FORMED)
 
 
-def test_derivatives(pair):
+def test_derivatives(pair: Pair) -> None:
     robot, model, q, v, a = pair
     data = model.createData()
     theirs = []
@@ -94,7 +100,7 @@ def test_derivatives(pair):
     close(robot.forward_dynamics_derivatives(q, v, a), np.array(theirs), SOLVED)
 
 
-def test_configurations(pair):
+def test_configurations(pair: Pair) -> None:
     robot, model, q, v, _ = pair
     close(robot.integrate(q, v), np.array([pin.integrate(model, *state) for state in zip(q, v, strict=True)]), FORMED)
     start, end = q[:-1], q[1:]

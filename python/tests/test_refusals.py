@@ -1,11 +1,16 @@
 """Every method refuses arrays that do not fit, and names the argument: shape, dtype, byte order, type, states, numbers not finite."""
 
 import re
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import featherbench
+
+Arrays = dict[str, NDArray[np.float64]]
 
 ROBOT = featherbench.Robot.generated("humanoid")
 NQ, NV = ROBOT.nq, ROBOT.nv
@@ -42,7 +47,7 @@ WITH_THREADS = [name for name in METHODS if "threads" in (getattr(featherbench.R
 CASES = [(method, argument) for method, (_, arguments, _) in METHODS.items() for argument, _ in arguments]
 
 
-def good(method):
+def good(method: str) -> Arrays:
     """Give arrays that fit, of several states."""
     rng = np.random.default_rng(4)
     of_q = {
@@ -53,24 +58,24 @@ def good(method):
     return {name: of_q[name] if name in of_q else rng.uniform(-1, 1, (STATES, size)) for name, size in METHODS[method][1]}
 
 
-def call(method, arrays, **more):
+def call(method: str, arrays: Mapping[str, Any], **more: Any) -> Any:
     before, _, after = METHODS[method]
     return getattr(ROBOT, method)(*before, **arrays, **after, **more)
 
 
-def refused(error, method, arrays, text, **more):
+def refused(error: type[Exception], method: str, arrays: Mapping[str, Any], text: str, **more: Any) -> None:
     with pytest.raises(error, match=text) as caught:
         call(method, arrays, **more)
     assert type(caught.value) is error
 
 
-def test_every_method_is_here():
+def test_every_method_is_here() -> None:
     public = {name for name in dir(featherbench.Robot) if not name.startswith("_") and callable(getattr(featherbench.Robot, name))}
     assert public == set(METHODS) | OTHERS
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_what_fits_is_computed(method):
+def test_what_fits_is_computed(method: str) -> None:
     arrays = good(method)
     many = call(method, arrays)
     assert many.shape[0] == STATES
@@ -83,7 +88,7 @@ def test_what_fits_is_computed(method):
 
 
 @pytest.mark.parametrize(("method", "argument"), CASES)
-def test_shapes(method, argument):
+def test_shapes(method: str, argument: str) -> None:
     arrays = good(method)
     x = arrays[argument]
     for bad, shape in [
@@ -97,7 +102,7 @@ def test_shapes(method, argument):
 
 
 @pytest.mark.parametrize(("method", "argument"), CASES)
-def test_dtypes(method, argument):
+def test_dtypes(method: str, argument: str) -> None:
     arrays = good(method)
     x = arrays[argument]
     swapped = x.astype(x.dtype.newbyteorder())
@@ -113,7 +118,7 @@ def test_dtypes(method, argument):
 
 
 @pytest.mark.parametrize(("method", "argument"), CASES)
-def test_single_precision(method, argument):
+def test_single_precision(method: str, argument: str) -> None:
     arrays = good(method)
     if method in WITH_OUT and argument == "q":
         # Then it is another argument that has another dtype than q.
@@ -123,7 +128,7 @@ def test_single_precision(method, argument):
 
 
 @pytest.mark.parametrize(("method", "argument"), CASES)
-def test_numbers_of_states(method, argument):
+def test_numbers_of_states(method: str, argument: str) -> None:
     arrays = good(method)
     if len(arrays) == 1:
         return  # nothing to disagree with
@@ -135,7 +140,7 @@ def test_numbers_of_states(method, argument):
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize(("method", "argument"), CASES)
-def test_numbers_that_are_not_finite(method, argument, bad):
+def test_numbers_that_are_not_finite(method: str, argument: str, bad: float) -> None:
     arrays = good(method)
     arrays[argument][1, 2] = bad
     word = {"nan": "NaN", "inf": "inf", "-inf": "-inf"}[str(bad)]
@@ -151,7 +156,7 @@ QUATERNIONS = [
 
 
 @pytest.mark.parametrize(("method", "argument", "place"), QUATERNIONS)
-def test_quaternions_of_zeros(method, argument, place):
+def test_quaternions_of_zeros(method: str, argument: str, place: slice) -> None:
     arrays = good(method)
     if method == "from_drake":
         arrays["q"] = ROBOT.to_drake(arrays["q"])
@@ -162,7 +167,7 @@ def test_quaternions_of_zeros(method, argument, place):
 
 
 @pytest.mark.parametrize("method", WITH_OUT)
-def test_out(method):
+def test_out(method: str) -> None:
     arrays = good(method)
     due = call(method, arrays)
     read_only = np.empty_like(due)
@@ -181,25 +186,25 @@ def test_out(method):
         refused(error, method, arrays, text, out=bad)
 
 
-def test_methods_with_threads():
+def test_methods_with_threads() -> None:
     assert len(WITH_THREADS) == 10
 
 
 @pytest.mark.parametrize("method", WITH_THREADS)
 @pytest.mark.parametrize("threads", [0, -1])
-def test_threads(method, threads):
+def test_threads(method: str, threads: int) -> None:
     refused(featherbench.Error, method, good(method), f"^threads is {threads}; give 1 or more", threads=threads)
     one = {name: x[0].copy() for name, x in good(method).items()}
     refused(featherbench.Error, method, one, f"^threads is {threads}; give 1 or more", threads=threads)
 
 
 @pytest.mark.parametrize("method", ["placement", "motion", "jacobian"])
-def test_frames(method):
+def test_frames(method: str) -> None:
     with pytest.raises(featherbench.Error, match="there is no body or frame 'no such frame'"):
         getattr(ROBOT, method)(*good(method).values(), "no such frame")
 
 
 @pytest.mark.parametrize("method", [name for name, (before, _, _) in METHODS.items() if before])
-def test_engines(method):
+def test_engines(method: str) -> None:
     with pytest.raises(featherbench.Error, match="^engine is 'bullet'; give 'pinocchio', 'mujoco' or 'drake'"):
         getattr(ROBOT, method)("bullet", *good(method).values())

@@ -16,7 +16,7 @@ ARM = Path(__file__).parents[2] / "guide" / "arm.urdf"
 
 
 @pytest.fixture(scope="module")
-def program():
+def program() -> Path:
     try:
         return _program.find()
     except FileNotFoundError as missing:
@@ -24,7 +24,7 @@ def program():
 
 
 @pytest.fixture(scope="module")
-def run(program, tmp_path_factory):
+def run(program: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("run") / "smoke"
     done = subprocess.run([program, "run", "--suite", "smoke", "--no-timing", "--out", folder], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
@@ -32,7 +32,7 @@ def run(program, tmp_path_factory):
 
 
 @pytest.mark.parametrize("frame", ["polars", "pandas"])
-def test_rows_have_their_types_and_verdicts(run, frame):
+def test_rows_have_their_types_and_verdicts(run: Path, frame: str) -> None:
     package = pytest.importorskip(frame, reason=f"{frame} is not installed")
     rows = featherbench.read_run(run, frame)
     assert isinstance(rows, package.DataFrame)
@@ -53,7 +53,7 @@ def test_rows_have_their_types_and_verdicts(run, frame):
     assert set(rows["run"]) == {info["run"]}
 
 
-def test_both_frames_have_the_same_numbers(run):
+def test_both_frames_have_the_same_numbers(run: Path) -> None:
     pytest.importorskip("polars", reason="polars is not installed")
     pytest.importorskip("pandas", reason="pandas is not installed")
     ours, theirs = featherbench.read_run(run, "polars"), featherbench.read_run(run, "pandas")
@@ -61,7 +61,7 @@ def test_both_frames_have_the_same_numbers(run):
     assert ours["value"].drop_nulls().to_list() == theirs["value"].dropna().tolist()
 
 
-def test_a_damaged_run_is_refused(run, tmp_path):
+def test_a_damaged_run_is_refused(run: Path, tmp_path: Path) -> None:
     copy = shutil.copytree(run, tmp_path / "copy")
     with (copy / "rows.csv").open("a") as rows:
         rows.write("one row more\n")
@@ -74,7 +74,7 @@ def test_a_damaged_run_is_refused(run, tmp_path):
         featherbench.read_run(run, "arrow")
 
 
-def test_another_format_is_refused(tmp_path):
+def test_another_format_is_refused(tmp_path: Path) -> None:
     (tmp_path / "rows.csv").write_text("a\n")
     (tmp_path / "schema.json").write_text('{"format": 1, "columns": []}')
     lines = [f"{checksum((tmp_path / name).read_bytes())}  {name}\n" for name in ("rows.csv", "schema.json")]
@@ -83,7 +83,7 @@ def test_another_format_is_refused(tmp_path):
         featherbench.read_run(tmp_path)
 
 
-def test_a_comparison_is_an_object(program, tmp_path):
+def test_a_comparison_is_an_object(program: Path, tmp_path: Path) -> None:
     pytest.importorskip("pinocchio", reason="pinocchio is not installed")
     found = featherbench.compare(ARM, engines=["pinocchio"], out=tmp_path / "compare")
     assert found.folder == tmp_path / "compare"
@@ -95,15 +95,15 @@ def test_a_comparison_is_an_object(program, tmp_path):
         featherbench.compare(tmp_path / "no_such.urdf", engines=["pinocchio"], out=tmp_path / "bad")
 
 
-def test_python_m_featherbench_is_the_program(program):
-    def called(*arguments):
+def test_python_m_featherbench_is_the_program(program: Path) -> None:
+    def called(*arguments: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run([sys.executable, "-m", "featherbench", *arguments], capture_output=True, text=True, check=False)
 
     assert called("--version").stdout == subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
     assert called("run", "--suite", "no such suite").returncode == 2
 
 
-def test_a_program_that_is_not_there_is_told(monkeypatch, tmp_path):
+def test_a_program_that_is_not_there_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv(_program.VARIABLE, raising=False)

@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -12,15 +13,19 @@ import featherbench
 from featherbench import _native
 
 STUB = Path(featherbench.__file__).with_name("_native.pyi")
+# The names of a class, with the parameters of functions: those by position and those by keyword, and whether each has a default.
+Parameters = tuple[list[tuple[str, bool]], list[tuple[str, bool]]]
+Names = dict[str, Parameters | None]
 TYPED = Path(__file__).with_name("typed.py")
 
 
-def stubs():
+def stubs() -> dict[str, Names]:
     """Give the names of each class in the stub, with the parameters of its functions; None for properties."""
-    found = {}
+    found: dict[str, Names] = {}
     for item in ast.parse(STUB.read_text(encoding="utf-8")).body:
         if isinstance(item, ast.ClassDef):
-            names = found[item.name] = {}
+            names: Names = {}
+            found[item.name] = names
             for entry in item.body:
                 if isinstance(entry, ast.FunctionDef):
                     decorators = {getattr(decorator, "id", "") for decorator in entry.decorator_list}
@@ -35,8 +40,8 @@ def stubs():
 
 
 @pytest.mark.parametrize("name", ["Robot", "Joint"])
-def test_the_stub_has_every_name(name):
-    compiled = {}
+def test_the_stub_has_every_name(name: str) -> None:
+    compiled: Names = {}
     for entry, value in vars(getattr(_native, name)).items():
         if entry.startswith("_"):
             continue
@@ -50,7 +55,7 @@ def test_the_stub_has_every_name(name):
     assert len(compiled) > 6
 
 
-def mypy(path):
+def mypy(path: Path) -> subprocess.CompletedProcess[str]:
     pytest.importorskip("mypy", reason="mypy is not installed")
     config = Path(__file__).parents[1] / "pyproject.toml"
     variables = {"MYPYPATH": str(STUB.parents[1]), "PATH": ""}
@@ -58,14 +63,24 @@ def mypy(path):
     return subprocess.run(command, env=variables, capture_output=True, text=True, check=False)
 
 
-def test_a_typed_program_is_taken(tmp_path):
+def test_a_typed_program_is_taken(tmp_path: Path) -> None:
     program = tmp_path / "typed.py"
     program.write_text(TYPED.read_text(encoding="utf-8"), encoding="utf-8")
     done = mypy(program)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_mistakes_are_refused(tmp_path):
+@pytest.mark.parametrize("page", ["README.md", "python/README.md", "guide/python.md", "guide/tasks.md"])
+def test_the_code_of_a_page_is_taken(page: str, tmp_path: Path) -> None:
+    text = (Path(__file__).parents[2] / page).read_text(encoding="utf-8")
+    program = tmp_path / "page.py"
+    program.write_text("".join(re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE)), encoding="utf-8")
+    assert program.stat().st_size > 0
+    done = mypy(program)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_mistakes_are_refused(tmp_path: Path) -> None:
     mistakes = {
         "robot.jacobian(q)": "call-arg",
         'robot.velocity_to("bullet", q, q)': "arg-type",
@@ -81,6 +96,6 @@ def test_mistakes_are_refused(tmp_path):
     assert told == list(mistakes.values())
 
 
-def test_the_typed_program_runs():
+def test_the_typed_program_runs() -> None:
     done = subprocess.run([sys.executable, TYPED], env={"PYTHONPATH": ":".join(sys.path)}, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

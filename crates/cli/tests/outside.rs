@@ -198,23 +198,23 @@ fn oracle_command(python: &Path, module: &str) -> Vec<OsString> {
     vec!["env".into(), place, python.into(), "-P".into(), "-m".into(), format!("featherbench_oracles.{module}").into()]
 }
 
-/// Runs tests of the oracles by pytest.
-fn pytest(arguments: &[&str]) -> Outcome {
+/// Runs tests by pytest in the folder of the oracles. Beside it they need this package.
+fn pytest(package: &str, arguments: &[&str]) -> Outcome {
     let python = installed_python()?;
-    let there = Command::new(&python).args(["-c", "import pytest"]).output().unwrap().status.success();
+    let there = Command::new(&python).args(["-c", &format!("import pytest, {package}")]).output().unwrap().status.success();
     if !there {
-        return Err(Unpassed::Skipped("pytest is not installed (`ci/python-tools`)".into()));
+        return Err(Unpassed::Skipped(format!("pytest or {package} is not installed (`ci/python-tools`)")));
     }
     checked(Command::new(&python).current_dir(project().join("oracles")).args(["-m", "pytest", "-q"]).args(arguments))
 }
 
 fn oracles_by_themselves() -> Outcome {
-    pytest(&["--ignore", "tests/test_conventions.py"])
+    pytest("numpy", &["--ignore", "tests/test_conventions.py"])
 }
 
 /// Every row about a convention holds, and its alternative does not.
 fn conventions() -> Outcome {
-    pytest(&["tests/test_conventions.py"])
+    pytest("numpy", &["tests/test_conventions.py"])
 }
 
 /// The output of `featherbench oracles check` about a program, which may import packages from these folders.
@@ -403,12 +403,12 @@ fn one_file_is_another() -> Outcome {
 }
 
 fn browser() -> Outcome {
-    for program in ["python3", "chromium", "chromedriver"] {
+    for program in ["chromium", "chromedriver"] {
         if !exists(program) {
             return Err(Unpassed::Skipped(format!("there is no {program}")));
         }
     }
     let sandbox = Sandbox::new();
     sandbox.run(&["run", "--suite", "smoke", "--out", "out"]).expect(0, &["report:"]);
-    checked(Command::new("python3").arg(project().join("ci/browser_test.py")).arg(sandbox.path("out")))
+    pytest("selenium", &["-c", "pyproject.toml", "../ci/browser_test.py", "--report", &sandbox.path("out").to_string_lossy()])
 }

@@ -15,7 +15,7 @@ from pathlib import Path
 import casadi as cs
 import numpy as np
 
-from featherbench_oracles.algebra import Array
+from featherbench_oracles.core.algebra import Array
 
 COMPILERS = ("clang", "gcc", "cc")  # in the order in which they are looked for
 # As native oracles: optimised for this processor, without reordering of sums. `contract` lets products and sums become one instruction,

@@ -15,8 +15,8 @@ from __future__ import annotations
 import numpy as np
 
 from featherbench_oracles.adam.urdf import floats
-from featherbench_oracles.algebra import Array, rotation
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.algebra import Array, rotation
+from featherbench_oracles.core.robot import Description
 
 
 def base_transform(robot: Description, q: Array) -> Array:

@@ -13,10 +13,10 @@ import numpy as np
 from featherbench_oracles.adam import symbols, urdf
 from featherbench_oracles.adam.compiling import FLAGS, Batch, Compiled, compiler
 from featherbench_oracles.adam.coordinates import base_transform, to_angular_first
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.clock import Measured
-from featherbench_oracles.protocol import Quantities, State, Unsupported, mass_matrix_probe, readback_row
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.clock import Measured
+from featherbench_oracles.core.protocol import Quantities, State, Unsupported, mass_matrix_probe, readback_row
+from featherbench_oracles.core.robot import Description
 
 LARGEST = 40  # dofs: what the code of a robot of 35 takes to compile stands in README.md, "Generated code"
 

@@ -11,8 +11,8 @@ from adam import Representations
 from adam.casadi import KinDynComputations
 
 from featherbench_oracles.adam import urdf
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.protocol import Unsupported
+from featherbench_oracles.core.robot import Description
 
 BASE = 6  # velocities of the base, which stand before those of the joints
 

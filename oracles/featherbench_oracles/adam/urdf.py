@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.robot import Body, Description
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.protocol import Unsupported
+from featherbench_oracles.core.robot import Body, Description
 
 WORLD = "world"  # the link of the world, which a robot with a fixed base hangs on
 

@@ -9,9 +9,9 @@ from typing import Any
 import clarabel
 import numpy as np
 
-from featherbench_oracles.algebra import Array
+from featherbench_oracles.abilities.contacts import ContactProblem, ContactSolution, SolverTable
 from featherbench_oracles.clarabel.interior import solve
-from featherbench_oracles.contacts import ContactProblem, ContactSolution, SolverTable
+from featherbench_oracles.core.algebra import Array
 
 # An eigenvalue of G below this much of the largest is rounding.
 RANK = 1e-13

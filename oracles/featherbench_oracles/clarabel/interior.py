@@ -9,7 +9,7 @@ import clarabel
 import numpy as np
 from scipy import sparse
 
-from featherbench_oracles.algebra import Array
+from featherbench_oracles.core.algebra import Array
 
 # The words of an answer that is within the tolerance that was asked.
 SOLVED = "Solved"

@@ -6,12 +6,13 @@ import clarabel
 import numpy as np
 import scipy
 
+from featherbench_oracles.abilities import HasContactRelaxations, HasSemidefiniteSolvers
 from featherbench_oracles.clarabel import contacts, semidefinite
-from featherbench_oracles.protocol import Quantities, Robot, Unsupported
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.protocol import Quantities, Robot, Unsupported
+from featherbench_oracles.core.robot import Description
 
 
-class Clarabel:
+class Clarabel(HasContactRelaxations, HasSemidefiniteSolvers):
     """The engine Clarabel, for `session.serve`."""
 
     name = "clarabel"

@@ -5,9 +5,9 @@ from __future__ import annotations
 import clarabel
 import numpy as np
 
-from featherbench_oracles.algebra import Array
+from featherbench_oracles.abilities.semidefinite import SIZE, SemidefiniteProblem, SemidefiniteSolution, SemidefiniteTable
 from featherbench_oracles.clarabel.interior import solve
-from featherbench_oracles.semidefinite import SIZE, SemidefiniteProblem, SemidefiniteSolution, SemidefiniteTable
+from featherbench_oracles.core.algebra import Array
 
 # Clarabel's order of a triangle is that of columns, its entries beside the diagonal times √2: so scalar products are those of matrices.
 ROWS, COLUMNS = (np.array(index) for index in zip(*[(i, j) for j in range(SIZE) for i in range(j + 1)], strict=True))

@@ -13,9 +13,9 @@ import numpy as np
 from dartpy import dynamics
 from dartpy.math import Isometry3
 
+from featherbench_oracles.core.protocol import Unsupported
+from featherbench_oracles.core.robot import Description, Joint
 from featherbench_oracles.dart.coordinates import AXES
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.robot import Description, Joint
 
 
 def build(robot: Description) -> tuple[dynamics.Skeleton, list[dynamics.Joint], list[dynamics.BodyNode]]:

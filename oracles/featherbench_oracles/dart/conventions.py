@@ -9,8 +9,8 @@ from dartpy import dynamics
 from dartpy.math import Isometry3
 from numpy.typing import ArrayLike
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.conventions import (
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.conventions import (
     ABOUT_ORIGIN,
     ALPHA,
     AXIS,

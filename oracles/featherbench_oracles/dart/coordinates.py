@@ -20,9 +20,9 @@ from math import atan2
 import numpy as np
 from dartpy import dynamics
 
-from featherbench_oracles.algebra import Array, rotation
-from featherbench_oracles.change import CoordinateChange
-from featherbench_oracles.robot import Description, Joint
+from featherbench_oracles.core.algebra import Array, rotation
+from featherbench_oracles.core.change import CoordinateChange
+from featherbench_oracles.core.robot import Description, Joint
 
 AXES = np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]])  # takes DART's x, y, z to our z, -y, x
 MIRROR = np.diag([1.0, -1.0, 1.0])

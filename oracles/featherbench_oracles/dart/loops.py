@@ -12,12 +12,12 @@ from typing import TypeAlias
 import numpy as np
 from dartpy import constraint, dynamics, simulation
 
-from featherbench_oracles.algebra import Array
+from featherbench_oracles.abilities.loops import Drive, End, Loop, LoopMethods, Motion, Tie
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.dart.building import build
 from featherbench_oracles.dart.coordinates import change_of_velocities, exponential, to_engine_q
-from featherbench_oracles.loops import Drive, End, Loop, Motion, Tie
-from featherbench_oracles.messages import Header
-from featherbench_oracles.robot import Description
 
 Joints: TypeAlias = list[dynamics.Joint]
 Bodies: TypeAlias = list[dynamics.BodyNode]
@@ -141,3 +141,6 @@ def _constraint(loop: Loop, ends: tuple[End, End], bodies: list[dynamics.BodyNod
     if first.body < 0:
         return constraint.BallJointConstraint(moved, point)
     return constraint.BallJointConstraint(bodies[first.body], moved, point)
+
+
+LOOPS = LoopMethods(DartLoops, ACCELERATIONS, tuple(MOTIONS), lacks=LACKS)

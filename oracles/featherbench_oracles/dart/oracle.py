@@ -8,14 +8,16 @@ from pathlib import Path
 import numpy as np
 from dartpy import dynamics
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.change import CoordinateChange
-from featherbench_oracles.clock import TimedCalls
-from featherbench_oracles.dart import loops, reading, scenes
+from featherbench_oracles.abilities import HasLoops, HasScenes, ReadsFiles
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.change import CoordinateChange
+from featherbench_oracles.core.clock import TimedCalls
+from featherbench_oracles.core.protocol import Quantities, Reading, State, mass_matrix_probe, readback_row
+from featherbench_oracles.core.robot import Description
+from featherbench_oracles.dart import reading, scenes
 from featherbench_oracles.dart.building import build
 from featherbench_oracles.dart.coordinates import AXES, change_of_velocities, to_engine_q
-from featherbench_oracles.protocol import Quantities, Reading, State, mass_matrix_probe, readback_row
-from featherbench_oracles.robot import Description
+from featherbench_oracles.dart.loops import LOOPS
 
 
 class DartRobot:
@@ -171,7 +173,7 @@ class DartRobot:
         return change.to_neutral_jacobian(self.skeleton.getWorldJacobian(self.bodies[ask.body]))
 
 
-class Dart:
+class Dart(ReadsFiles, HasLoops, HasScenes):
     """The engine DART, for `session.serve`."""
 
     name = "dart"
@@ -201,10 +203,7 @@ class Dart:
         "body_jacobian": {"world_jacobian": DartRobot.jacobian},
     }
 
-    loop_mechanics = loops.DartLoops
-    loop_lacks = loops.LACKS
-    loop_accelerations = loops.ACCELERATIONS
-    loop_motions = tuple(loops.MOTIONS)
+    loops = LOOPS
     scene_variants = scenes.VARIANTS
 
     def prepare(self, description: Description) -> DartRobot:

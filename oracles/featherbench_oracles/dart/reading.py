@@ -17,11 +17,11 @@ import numpy as np
 from dartpy import common, dynamics, utils
 from dartpy.math import Isometry3
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Header
-from featherbench_oracles.protocol import Reading, Unsupported
-from featherbench_oracles.reading import HeldJoint, Link, Place, describe, elements, errors, inertial, mentioned, note, overheard
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.protocol import Reading, Unsupported
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, errors, inertial, mentioned, note, overheard
+from featherbench_oracles.core.robot import Description
 
 # DART's name of a joint's type -> ours
 TYPES = {
@@ -41,7 +41,7 @@ EDITED = 1e-9  # relative difference of a link's mass that is reported as an edi
 
 
 def read(path: Path, form: str, base: str, make: Callable[[Description, dynamics.Skeleton, Any, Any], Any]) -> Reading:
-    """Read a file as `protocol.FileReader` says; `make` takes the description, the skeleton, its moving joints and their bodies."""
+    """Read a file as `abilities.ReadsFiles` says; `make` takes the description, the skeleton, its moving joints and their bodies."""
     notes: list[Header] = []
     with overheard(path, notes):
         skeleton = _urdf(path, base) if form == "urdf" else _mjcf(path)

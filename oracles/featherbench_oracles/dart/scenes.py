@@ -7,8 +7,8 @@ from functools import partial
 import dartpy
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.scenes import Body, Motion, Scene, Shape, Stepping, Variant
+from featherbench_oracles.abilities.scenes import Body, Motion, Scene, Shape, Stepping, Variant
+from featherbench_oracles.core.algebra import Array
 
 # Of each variant the friction that its solver has.
 SOLVERS = {

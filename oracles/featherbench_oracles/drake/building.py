@@ -18,9 +18,9 @@ from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody import tree
 from pydrake.multibody.plant import MultibodyPlant
 
-from featherbench_oracles.algebra import Array, skew
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.robot import Body, Description, Joint
+from featherbench_oracles.core.algebra import Array, skew
+from featherbench_oracles.core.protocol import Unsupported
+from featherbench_oracles.core.robot import Body, Description, Joint
 
 
 def spatial_inertia(body: Body) -> tree.SpatialInertia:

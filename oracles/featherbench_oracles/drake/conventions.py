@@ -13,8 +13,8 @@ from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody import tree
 from pydrake.multibody.plant import MultibodyPlant
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.conventions import (
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.conventions import (
     ABOUT_ORIGIN,
     ALPHA,
     AXIS,

@@ -14,10 +14,10 @@ import numpy as np
 from pydrake.common.eigen_geometry import Quaternion
 from pydrake.math import RollPitchYaw
 
-from featherbench_oracles.algebra import Array, rotation
-from featherbench_oracles.change import CoordinateChange
-from featherbench_oracles.derivatives import Rates, of_turned_ball, of_turned_free
-from featherbench_oracles.robot import Description, Joint
+from featherbench_oracles.abilities.derivatives import Rates, of_turned_ball, of_turned_free
+from featherbench_oracles.core.algebra import Array, rotation
+from featherbench_oracles.core.change import CoordinateChange
+from featherbench_oracles.core.robot import Description, Joint
 
 
 def to_engine_q(robot: Description, q: Array) -> Array:

@@ -14,13 +14,13 @@ from pydrake.multibody import tree
 from pydrake.multibody.plant import DiscreteContactApproximation, MultibodyPlant
 from pydrake.systems.analysis import Simulator
 
-from featherbench_oracles.algebra import Array
+from featherbench_oracles.abilities.loops import TYPES, Drive, End, Follow, LoopMethods, Motion, Tie
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.protocol import Unsupported
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.drake.building import build
 from featherbench_oracles.drake.coordinates import change_of_velocities, to_engine_q
-from featherbench_oracles.loops import TYPES, Drive, End, Follow, Motion, Tie
-from featherbench_oracles.messages import Header
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.robot import Description
 
 ACCELERATIONS = ("sap_1e-3",)
 MOTIONS = ("sap",)
@@ -134,3 +134,6 @@ class DrakeLoops:
 
 def _pose(end: End) -> RigidTransform:
     return RigidTransform(RotationMatrix(end.rotation), end.translation)
+
+
+LOOPS = LoopMethods(DrakeLoops, ACCELERATIONS, tuple(MOTIONS), types=HELD)

@@ -12,16 +12,18 @@ from pydrake.multibody import tree
 from pydrake.multibody.math import SpatialForce
 from pydrake.multibody.plant import MultibodyPlant
 
-from featherbench_oracles.algebra import Array, skew
-from featherbench_oracles.change import CoordinateChange
-from featherbench_oracles.clock import NOTHING, TimedCalls
-from featherbench_oracles.derivatives import Differentiated
-from featherbench_oracles.drake import loops, reading, scenes
+from featherbench_oracles.abilities import HasLoops, HasRods, HasSceneDerivatives, HasScenes, ReadsFiles
+from featherbench_oracles.abilities.derivatives import Differentiated
+from featherbench_oracles.core.algebra import Array, skew
+from featherbench_oracles.core.change import CoordinateChange
+from featherbench_oracles.core.clock import NOTHING, TimedCalls
+from featherbench_oracles.core.protocol import Quantities, Reading, State, mass_matrix_probe, readback_row
+from featherbench_oracles.core.robot import Description
+from featherbench_oracles.drake import reading, scenes
 from featherbench_oracles.drake.building import build
 from featherbench_oracles.drake.coordinates import change_of_velocities, rates_of_change, to_engine_q
+from featherbench_oracles.drake.loops import LOOPS
 from featherbench_oracles.drake.rods import RODS
-from featherbench_oracles.protocol import Quantities, Reading, State, mass_matrix_probe, readback_row
-from featherbench_oracles.robot import Description
 
 
 class DrakeRobot:
@@ -273,7 +275,7 @@ def gradient_of(numbers: Any, seeds: int) -> Array:
     return np.array([row if len(row) else np.zeros(seeds) for row in rows])
 
 
-class Drake:
+class Drake(ReadsFiles, HasLoops, HasRods, HasScenes, HasSceneDerivatives):
     """The engine Drake, for `session.serve`."""
 
     name = "drake"
@@ -308,10 +310,7 @@ class Drake:
         "fd_dv": {"autodiff": DrakeRobot.aba_dv},
     }
 
-    loop_mechanics = loops.DrakeLoops
-    loop_types = loops.HELD
-    loop_accelerations = loops.ACCELERATIONS
-    loop_motions = tuple(loops.MOTIONS)
+    loops = LOOPS
     scene_variants = scenes.VARIANTS
     scene_derivatives = scenes.DERIVATIVES
 

@@ -19,11 +19,11 @@ from pydrake.multibody import tree
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
-from featherbench_oracles.algebra import Array, skew, symmetric
-from featherbench_oracles.messages import Header
-from featherbench_oracles.protocol import Reading
-from featherbench_oracles.reading import HeldJoint, Link, Place, describe, elements, inertial, mentioned, note, overheard
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.algebra import Array, skew, symmetric
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.protocol import Reading
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, inertial, mentioned, note, overheard
+from featherbench_oracles.core.robot import Description
 
 TYPES = {
     "revolute": "revolute",
@@ -38,7 +38,7 @@ EDITED = 1e-9  # relative difference of a link's mass or inertia that is reporte
 
 
 def read(path: Path, form: str, base: str, make: Callable[[Description, MultibodyPlant, list[list[tree.Joint]]], Any]) -> Reading:
-    """Read a file as `protocol.FileReader` says; `make` takes the description, the plant and each body's joint."""
+    """Read a file as `abilities.ReadsFiles` says; `make` takes the description, the plant and each body's joint."""
     notes: list[Header] = []
     plant = MultibodyPlant(0.0)
     with overheard(path, notes):

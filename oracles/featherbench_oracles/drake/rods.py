@@ -7,8 +7,8 @@ from pydrake.math import RigidTransform
 from pydrake.multibody import tree
 from pydrake.multibody.plant import MultibodyPlant
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.rods import Rod, RodTable
+from featherbench_oracles.abilities.rods import Rod, RodTable
+from featherbench_oracles.core.algebra import Array
 
 
 class HingeChain:

@@ -22,9 +22,9 @@ from pydrake.multibody.tree import RigidBody, SpatialInertia, UnitInertia
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, Simulator_, SimulatorConfig
 from pydrake.systems.framework import Context, DiagramBuilder
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.scenes import Derivative, DerivativeVariant, Motion, Scene, Stepping, Variant
+from featherbench_oracles.abilities.scenes import Derivative, DerivativeVariant, Motion, Scene, Stepping, Variant
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.protocol import Unsupported
 
 APPROXIMATIONS = {
     "tamsi": DiscreteContactApproximation.kTamsi,

@@ -30,10 +30,10 @@ from itertools import pairwise
 import mujoco as mj
 import numpy as np
 
-from featherbench_oracles.algebra import Array
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.protocol import Unsupported
+from featherbench_oracles.core.robot import Body, Description, Joint
 from featherbench_oracles.mujoco.coordinates import wxyz
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.robot import Body, Description, Joint
 
 HINGE, SLIDE, BALL, FREE = mj.mjtJoint.mjJNT_HINGE, mj.mjtJoint.mjJNT_SLIDE, mj.mjtJoint.mjJNT_BALL, mj.mjtJoint.mjJNT_FREE
 X, Y, Z = np.eye(3)

@@ -6,8 +6,8 @@ import mujoco as mj
 import numpy as np
 from numpy.typing import ArrayLike
 
-from featherbench_oracles.algebra import Array, skew
-from featherbench_oracles.conventions import (
+from featherbench_oracles.core.algebra import Array, skew
+from featherbench_oracles.core.conventions import (
     ABOUT_ORIGIN,
     ALPHA,
     COM,

@@ -15,10 +15,10 @@ from __future__ import annotations
 import mujoco as mj
 import numpy as np
 
-from featherbench_oracles.algebra import Array, rotation
-from featherbench_oracles.change import CoordinateChange
-from featherbench_oracles.derivatives import Rates, of_turned_free
-from featherbench_oracles.robot import Body, Description
+from featherbench_oracles.abilities.derivatives import Rates, of_turned_free
+from featherbench_oracles.core.algebra import Array, rotation
+from featherbench_oracles.core.change import CoordinateChange
+from featherbench_oracles.core.robot import Body, Description
 
 
 def to_engine_q(robot: Description, q: Array) -> Array:

@@ -14,13 +14,13 @@ from time import perf_counter_ns
 import mujoco as mj
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.loops import TYPES, Drive, End, Follow, Loop, Motion, Tie
-from featherbench_oracles.messages import Header
+from featherbench_oracles.abilities.loops import TYPES, Drive, End, Follow, Loop, LoopMethods, Motion, Tie
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.protocol import Unsupported
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.mujoco.building import build
 from featherbench_oracles.mujoco.coordinates import change_of_velocities, from_wxyz, to_engine_q, wxyz
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.robot import Description
 
 # MuJoCo's default impedance, and its largest.
 SOFT, STIFF = (0.9, 0.95, 0.001, 0.5, 2.0), (0.9999, 0.9999, 0.001, 0.5, 2.0)
@@ -173,3 +173,6 @@ class MujocoLoops:
                 place, turn = q[joint.q][:3], from_wxyz(q[joint.q][3:])
                 q[joint.q] = np.append(joint.rotation.T @ (place - joint.translation), np.roll(wxyz(joint.rotation.T @ turn), -1))
         return q
+
+
+LOOPS = LoopMethods(MujocoLoops, ACCELERATIONS, tuple(MOTIONS), types=HELD)

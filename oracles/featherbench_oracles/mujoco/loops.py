@@ -12,9 +12,9 @@ from math import comb
 import mujoco as mj
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Header
-from featherbench_oracles.reading import Place, note, turned
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.reading import Place, note, turned
 
 JOINT = {mj.mjtEq.mjEQ_CONNECT: "spherical", mj.mjtEq.mjEQ_WELD: "fixed"}  # the loop's type
 KINDS = {mj.mjtEq.mjEQ_TENDON: "tendon", mj.mjtEq.mjEQ_FLEX: "flex"}  # in a note

@@ -9,15 +9,17 @@ from pathlib import Path
 import mujoco as mj
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.change import CoordinateChange
-from featherbench_oracles.derivatives import Differentiated
-from featherbench_oracles.mujoco import holding, reading, scenes, standing
+from featherbench_oracles.abilities import HasContactSteps, HasLoops, HasRods, HasSceneDerivatives, HasScenes, ReadsFiles
+from featherbench_oracles.abilities.derivatives import Differentiated
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.change import CoordinateChange
+from featherbench_oracles.core.protocol import Quantities, Reading, State, Unsupported, mass_matrix_probe, readback_row
+from featherbench_oracles.core.robot import Description
+from featherbench_oracles.mujoco import reading, scenes, standing
 from featherbench_oracles.mujoco.building import build, chains, motions
 from featherbench_oracles.mujoco.coordinates import change_of_velocities, from_wxyz, rates_of_change, to_engine_q
+from featherbench_oracles.mujoco.holding import LOOPS
 from featherbench_oracles.mujoco.rods import RODS
-from featherbench_oracles.protocol import Quantities, Reading, State, Unsupported, mass_matrix_probe, readback_row
-from featherbench_oracles.robot import Description
 
 
 class MujocoRobot:
@@ -277,7 +279,7 @@ def _forward_and_centred(answer: Callable[..., Array]) -> dict[str, Callable[...
     return _with_steps(answer, "difference_centred", centred=True) | _with_steps(answer, "difference", centred=False)
 
 
-class Mujoco:
+class Mujoco(ReadsFiles, HasContactSteps, HasLoops, HasRods, HasScenes, HasSceneDerivatives):
     """The engine MuJoCo, for `session.serve`."""
 
     name = "mujoco"
@@ -307,10 +309,7 @@ class Mujoco:
     }
 
     contact_steps = standing.METHODS
-    loop_mechanics = holding.MujocoLoops
-    loop_types = holding.HELD
-    loop_accelerations = holding.ACCELERATIONS
-    loop_motions = tuple(holding.MOTIONS)
+    loops = LOOPS
     scene_variants = scenes.VARIANTS
     scene_derivatives = scenes.DERIVATIVES
 

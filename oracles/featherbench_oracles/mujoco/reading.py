@@ -23,12 +23,23 @@ from typing import Any
 import mujoco as mj
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Header
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.protocol import Reading
+from featherbench_oracles.core.reading import (
+    HeldJoint,
+    Link,
+    Place,
+    describe,
+    inertial,
+    listed,
+    note,
+    overheard,
+    turned,
+    without_free_armature,
+)
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.mujoco.loops import loops
-from featherbench_oracles.protocol import Reading
-from featherbench_oracles.reading import HeldJoint, Link, Place, describe, inertial, listed, note, overheard, turned, without_free_armature
-from featherbench_oracles.robot import Description
 
 # Without this MuJoCo writes MUJOCO_LOG.TXT into the current folder.
 mj.set_mju_user_warning(lambda text: print(f"warning: {text}", file=sys.stderr))
@@ -45,7 +56,7 @@ TYPES = {
 
 
 def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjModel], Any]) -> Reading:
-    """Read a file as `protocol.FileReader` says; `make` takes the description and MuJoCo's model."""
+    """Read a file as `abilities.ReadsFiles` says; `make` takes the description and MuJoCo's model."""
     notes: list[Header] = []
     floating = form == "urdf" and base == "free"
     with overheard(path, notes):

@@ -5,9 +5,9 @@ from __future__ import annotations
 import mujoco as mj
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.inextensible import nodes, on_angles, straight_mass, straight_stiffness
-from featherbench_oracles.rods import Rod, RodTable
+from featherbench_oracles.abilities.inextensible import nodes, on_angles, straight_mass, straight_stiffness
+from featherbench_oracles.abilities.rods import Rod, RodTable
+from featherbench_oracles.core.algebra import Array
 
 
 class HingeChain:

@@ -7,9 +7,9 @@ from functools import partial
 import mujoco
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.scenes import Body, Derivative, DerivativeVariant, Motion, Scene, Stepping, Variant
+from featherbench_oracles.abilities.scenes import Body, Derivative, DerivativeVariant, Motion, Scene, Stepping, Variant
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.protocol import Unsupported
 
 CONES = {"pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL, "elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC}
 SOLVERS = {"pgs": mujoco.mjtSolver.mjSOL_PGS, "cg": mujoco.mjtSolver.mjSOL_CG, "newton": mujoco.mjtSolver.mjSOL_NEWTON}

@@ -17,10 +17,10 @@ from time import perf_counter_ns
 import mujoco as mj
 import numpy as np
 
-from featherbench_oracles.contact_steps import ContactSteps, StepMethod, StepSolution
+from featherbench_oracles.abilities.contact_steps import ContactSteps, StepMethod, StepSolution
+from featherbench_oracles.core.protocol import Unsupported
 from featherbench_oracles.mujoco.building import build
 from featherbench_oracles.mujoco.coordinates import change_of_velocities, to_engine_q
-from featherbench_oracles.protocol import Unsupported
 
 # The largest impedance that MuJoCo takes, whatever the distance.
 IMPEDANCE = 0.9999

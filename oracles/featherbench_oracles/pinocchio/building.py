@@ -11,9 +11,9 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.robot import Body, Description, Joint
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.protocol import Unsupported
+from featherbench_oracles.core.robot import Body, Description, Joint
 
 
 def about_axis(kind: str, axis: Array, *pitch: float) -> pin.JointModel:

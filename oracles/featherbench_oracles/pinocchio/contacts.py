@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.contacts import ContactProblem, ContactSolution, SolverTable
+from featherbench_oracles.abilities.contacts import ContactProblem, ContactSolution, SolverTable
+from featherbench_oracles.core.algebra import Array
 
 
 class _Solver:

@@ -8,8 +8,8 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from featherbench_oracles.algebra import skew
-from featherbench_oracles.conventions import (
+from featherbench_oracles.core.algebra import skew
+from featherbench_oracles.core.conventions import (
     ABOUT_ORIGIN,
     ALPHA,
     AXIS,

@@ -12,10 +12,10 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.change import CoordinateChange
-from featherbench_oracles.derivatives import Rates
-from featherbench_oracles.robot import Description
+from featherbench_oracles.abilities.derivatives import Rates
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.change import CoordinateChange
+from featherbench_oracles.core.robot import Description
 
 
 def to_engine_q(robot: Description, q: Array) -> Array:

@@ -7,12 +7,12 @@ from time import perf_counter_ns
 import numpy as np
 import pinocchio as pin
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.loops import Drive, End, Loop, Motion, Tie
-from featherbench_oracles.messages import Header
+from featherbench_oracles.abilities.loops import Drive, End, Loop, LoopMethods, Motion, Tie
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.pinocchio.building import build
 from featherbench_oracles.pinocchio.coordinates import change_of_velocities, to_engine_q
-from featherbench_oracles.robot import Description
 
 # Pinocchio's own default of mu is 0: then redundant rows have no answer.
 # At a smaller accuracy rounding would decide how many iterations are made.
@@ -144,3 +144,6 @@ class PinocchioLoops:
                 qs.append(q)
                 vs.append(v)
         return np.array(qs), np.array(vs), spent
+
+
+LOOPS = LoopMethods(PinocchioLoops, ACCELERATIONS, tuple(MOTIONS), lacks=LACKS)

@@ -9,11 +9,15 @@ import eigenpy
 import numpy as np
 import pinocchio as pin
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.change import CoordinateChange
-from featherbench_oracles.derivatives import Differentiated
-from featherbench_oracles.pinocchio import contacts, loops, reading
+from featherbench_oracles.abilities import HasContactSolvers, HasLoops, ReadsFiles
+from featherbench_oracles.abilities.derivatives import Differentiated
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.change import CoordinateChange
+from featherbench_oracles.core.protocol import Quantities, Reading, State, mass_matrix_probe, readback_row
+from featherbench_oracles.core.robot import Description
+from featherbench_oracles.pinocchio import reading
 from featherbench_oracles.pinocchio.building import build
+from featherbench_oracles.pinocchio.contacts import SOLVERS
 from featherbench_oracles.pinocchio.coordinates import (
     change_of_velocities,
     rates_of_change,
@@ -21,8 +25,7 @@ from featherbench_oracles.pinocchio.coordinates import (
     to_engine_q,
     to_our_parameters,
 )
-from featherbench_oracles.protocol import Quantities, Reading, State, mass_matrix_probe, readback_row
-from featherbench_oracles.robot import Description
+from featherbench_oracles.pinocchio.loops import LOOPS
 
 
 class PinocchioRobot:
@@ -247,7 +250,7 @@ class PinocchioRobot:
         return change.to_neutral_jacobian(np.roll(linear_first, 3, axis=0))
 
 
-class Pinocchio:
+class Pinocchio(ReadsFiles, HasContactSolvers, HasLoops):
     """The engine Pinocchio, for `session.serve`."""
 
     name = "pinocchio"
@@ -281,12 +284,8 @@ class Pinocchio:
         "torque_regressor": {"joint_torque_regressor": PinocchioRobot.regressor},
     }
 
-    contact_solvers = contacts.SOLVERS
-
-    loop_mechanics = loops.PinocchioLoops
-    loop_lacks = loops.LACKS
-    loop_accelerations = loops.ACCELERATIONS
-    loop_motions = tuple(loops.MOTIONS)
+    contact_solvers = SOLVERS
+    loops = LOOPS
 
     def prepare(self, description: Description) -> PinocchioRobot:
         """Build the robot, if its workspace fits into the process's memory."""

@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Header
-from featherbench_oracles.protocol import Reading, Unsupported
-from featherbench_oracles.reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard, without_free_armature
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.protocol import Reading, Unsupported
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard, without_free_armature
+from featherbench_oracles.core.robot import Description
 
 WORKSPACE = 15e3  # bytes of Pinocchio's Data per degree of freedom squared (1.4 GB at 300); without it the process may end
 SHARE = 0.8  # of the process's address space: the rest holds the libraries
@@ -29,7 +29,7 @@ WHOLE |= {"SphericalZYX": "euler_zyx", "Translation": "translation"}
 
 
 def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Model, list[int]], Any]) -> Reading:
-    """Read a file as `protocol.FileReader` says; `make` takes the description, the model and the indices of its (cos, sin) angles."""
+    """Read a file as `abilities.ReadsFiles` says; `make` takes the description, the model and the indices of its (cos, sin) angles."""
     notes: list[Header] = []
     with overheard(path, notes):
         if form == "mjcf":

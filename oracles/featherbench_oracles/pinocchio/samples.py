@@ -12,7 +12,7 @@ import time
 import numpy as np
 import pinocchio as pin
 
-from featherbench_oracles.algebra import Array
+from featherbench_oracles.core.algebra import Array
 
 SPREAD = 0.2
 

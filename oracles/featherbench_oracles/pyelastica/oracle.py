@@ -5,12 +5,13 @@ from __future__ import annotations
 from importlib.metadata import version
 from typing import NoReturn
 
-from featherbench_oracles.protocol import Quantities, Unsupported
+from featherbench_oracles.abilities import HasRods
+from featherbench_oracles.core.protocol import Quantities, Unsupported
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.pyelastica.rods import RODS
-from featherbench_oracles.robot import Description
 
 
-class PyElastica:
+class PyElastica(HasRods):
     """The engine PyElastica, for `session.serve`."""
 
     name = "pyelastica"

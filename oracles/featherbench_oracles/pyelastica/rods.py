@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from elastica.rod.cosserat_rod import CosseratRod
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.inextensible import nodes, on_angles, straight_mass, straight_stiffness
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.rods import Rod, RodTable
+from featherbench_oracles.abilities.inextensible import nodes, on_angles, straight_mass, straight_stiffness
+from featherbench_oracles.abilities.rods import Rod, RodTable
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.protocol import Unsupported
 
 # The section is a circle of this radius over the length. It enters by E alone, and by rotary inertia, which is left out.
 RADIUS = 0.01

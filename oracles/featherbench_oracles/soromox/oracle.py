@@ -7,12 +7,13 @@ from typing import NoReturn
 
 import jax
 
-from featherbench_oracles.protocol import Quantities, Unsupported
-from featherbench_oracles.robot import Description
+from featherbench_oracles.abilities import HasRods
+from featherbench_oracles.core.protocol import Quantities, Unsupported
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.soromox.rods import RODS
 
 
-class Soromox:
+class Soromox(HasRods):
     """The engine SoRoMoX, for `session.serve`. Its numbers are doubles, which JAX has only if it is asked."""
 
     name = "soromox"

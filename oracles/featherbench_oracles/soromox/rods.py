@@ -9,8 +9,8 @@ from soromox.systems import PlanarPCS
 from soromox.systems.components import CrossSectionGeometry, LinkSpec
 from soromox.systems.pcs.structures import PlanarPCSStructure
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.rods import Rod, RodTable
+from featherbench_oracles.abilities.rods import Rod, RodTable
+from featherbench_oracles.core.algebra import Array
 
 # SoRoMoX's planar sections are circles with rotary inertia: of this radius over the length, its part of a frequency is below 1e-8.
 SLENDER = 1e-4

@@ -8,8 +8,8 @@ from pathlib import Path
 from subprocess import DEVNULL, PIPE, Popen
 from typing import BinaryIO, cast
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Answer, Blocks, Header, read_message, write_message
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Answer, Blocks, Header, read_message, write_message
 
 HOME = Path(__file__).resolve().parents[2]  # the folder in which the package lies
 Methods = dict[str, list[str]]

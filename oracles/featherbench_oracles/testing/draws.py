@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array, rotation
-from featherbench_oracles.messages import Blocks, Header
-from featherbench_oracles.robot import JOINT_SIZES, WITH_AXIS, Description
+from featherbench_oracles.core.algebra import Array, rotation
+from featherbench_oracles.core.messages import Blocks, Header
+from featherbench_oracles.core.robot import JOINT_SIZES, WITH_AXIS, Description
 
 COUNT = 22  # states of `random_states`
 

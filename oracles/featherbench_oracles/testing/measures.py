@@ -17,9 +17,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Blocks
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Blocks
+from featherbench_oracles.core.robot import Description
 
 
 def tolerance_scale(text: str) -> float:

@@ -5,8 +5,8 @@ import sys
 
 from mpmath import mp
 
-from featherbench_oracles.robot import Description
-from featherbench_oracles.session import serve
+from featherbench_oracles.core.robot import Description
+from featherbench_oracles.core.session import serve
 from featherbench_oracles.truth.matrices import ZERO, exact
 from featherbench_oracles.truth.witness import Truth, Witness
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from mpmath import mpf
 
-from featherbench_oracles.robot import Body
+from featherbench_oracles.core.robot import Body
 from featherbench_oracles.truth.matrices import NULL, ONE, UNIT, ZERO, Number, Rows, exact, from_quaternion, generator, plus, screw
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from mpmath import mp, mpf
 
-from featherbench_oracles.algebra import Array
+from featherbench_oracles.core.algebra import Array
 
 Number = Any  # an mpf: mpmath has no types
 Rows = list[list[Number]]  # the first three rows of a 4x4 matrix, or a 4x4 matrix

@@ -5,9 +5,9 @@ from __future__ import annotations
 import mpmath
 from mpmath import mp, mpf
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.protocol import Quantities, State, readback_row
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.protocol import Quantities, State, readback_row
+from featherbench_oracles.core.robot import Description
 from featherbench_oracles.truth.links import PARTS, Link, pseudo_inertia
 from featherbench_oracles.truth.matrices import (
     ONE,

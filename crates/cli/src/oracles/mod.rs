@@ -135,7 +135,7 @@ pub fn start(root: &Root, engine: &DescribedEngine, limits: Limits) -> Result<Or
 
 /// Evaluates reproductions of known deviations in the engines' environment.
 pub fn reproducer(root: &Root, limits: Limits) -> featherbench_study::Reproduce {
-    let command = python(root).ok_or_else(|| MISSING.to_owned()).and_then(|python| package::command(root, &python, "reproduce"));
+    let command = python(root).ok_or_else(|| MISSING.to_owned()).and_then(|python| package::command(root, &python, "abilities.reproduce"));
     Arc::new(move |name, seeds| match &command {
         Ok(command) => featherbench_engines::reproduce(command, limits, name, seeds),
         Err(reason) => Err(NoAnswer::Failed(reason.clone())),

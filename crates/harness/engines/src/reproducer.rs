@@ -6,7 +6,7 @@ use featherbench_protocol::{Limits, Message, Process};
 use serde_json::json;
 use std::ffi::OsString;
 
-/// Asks `command` (`python -m featherbench_oracles.reproduce`) for a reproduction's values at the seeds 0..`seeds`.
+/// Asks `command` (`python -m featherbench_oracles.abilities.reproduce`) for a reproduction's values at the seeds 0..`seeds`.
 ///
 /// # Errors
 /// [`NoAnswer::Failed`] when the process or the reproduction fails, or the number of values is wrong.

@@ -83,7 +83,7 @@ mod tests {
     /// The shapes that our own oracles send.
     #[test]
     fn the_python_table_is_that_of_the_page() {
-        let (text, robot) = (project("oracles/featherbench_oracles/protocol.py"), robot());
+        let (text, robot) = (project("oracles/featherbench_oracles/core/protocol.py"), robot());
         let (_, table) = text.split_once("SHAPES: dict").unwrap();
         let rows: Vec<&str> = table.lines().skip(1).take_while(|line| !line.starts_with('}')).collect();
         assert!(rows.len() > 12);

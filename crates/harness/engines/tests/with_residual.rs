@@ -103,8 +103,9 @@ fn python() -> Option<PathBuf> {
 /// A program that serves a function of Python as a residual.
 fn oracle(python: &Path, function: &str) -> Oracle {
     let oracles = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../oracles");
-    let program =
-        format!("import sys; sys.path.insert(0, {oracles:?}); from featherbench_oracles.residual import serve_residual; {function}");
+    let program = format!(
+        "import sys; sys.path.insert(0, {oracles:?}); from featherbench_oracles.abilities.residual import serve_residual; {function}"
+    );
     Oracle::start(vec![python.into(), "-P".into(), "-c".into(), program.into()], Limits::default()).unwrap()
 }
 

@@ -9,7 +9,7 @@ use std::path::Path;
 const MESHES: [&str; 9] = ["stl", "obj", "dae", "ply", "gltf", "glb", "msh", "3ds", "fbx"];
 /// How much of a file is looked at: comments may stand before the root element.
 const HEAD: u64 = 1 << 20;
-/// Elements within each other, as `oracles/featherbench_oracles/examination.py` has it.
+/// Elements within each other, as `oracles/featherbench_oracles/core/examination.py` has it.
 const DEEPEST: usize = 500;
 
 impl FileContent {

@@ -4,7 +4,7 @@ use featherbench_model::Placement;
 use featherbench_spatial::largest;
 
 /// The rotation of a quaternion (w, x, y, z) of any length, row-major. It is operation by operation the formula of the MuJoCo oracle for
-/// numbers that MuJoCo imported (`turned` in `oracles/featherbench_oracles/reading.py`).
+/// numbers that MuJoCo imported (`turned` in `oracles/featherbench_oracles/core/reading.py`).
 pub(super) fn rotation([w, x, y, z]: [f64; 4]) -> [f64; 9] {
     let (ww, xx, yy, zz) = (w * w, x * x, y * y, z * z);
     let n = ((ww + xx) + yy) + zz;

@@ -10,12 +10,14 @@ from mpmath import mp, mpf, nstr, pi
 mp.prec = 4000  # 1100 bits for the largest angle's reduction, 70 digits next to a zero, and a wide margin
 
 
-def split(x):
+def split(x: mpf) -> tuple[float, float]:
+    """Find the nearest double, and what is left."""
     upper = float(x)
     return upper, float(x - mpf(upper))
 
 
-def bits(x):
+def bits(x: float) -> str:
+    """Write the bits of a double."""
     return struct.pack(">d", x).hex()
 
 
@@ -28,7 +30,8 @@ angles += [(6381956970095103.0 * 2.0**797, 0.0), (5.3193726483265414167072966566
 # The largest double, subnormal lower parts, lower parts far below the upper one.
 angles += [(1.7976931348623157e308, 0.0), (1.5, 5e-324), (1e300, 1e-300), (1e300, 1.0), (1e22, 0.25), (2.0**60, 2.0**-40)]
 # Double-doubles nearest to multiples of pi/2.
-angles += [split(k * pi / 2) for k in (1, 2, 3, 4, 7, 50, 1000, 10**6, 10**9, 2**31 + 1, 10**12 + 1, 10**15 + 3, 10**18 + 1, 2**100 + 1, 2**900 + 1)]
+angles += [split(k * pi / 2) for k in (1, 2, 3, 4, 7, 50, 1000, 10**6, 10**9, 2**31 + 1)]
+angles += [split(k * pi / 2) for k in (10**12 + 1, 10**15 + 3, 10**18 + 1, 2**100 + 1, 2**900 + 1)]
 # Next to them.
 angles += [split(k * pi / 2 + mpf(2) ** -j) for k in (1, 2, 1001, 10**8 + 3) for j in (10, 19, 20, 21, 40, 60)]
 

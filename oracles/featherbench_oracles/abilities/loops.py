@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any, Protocol
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Answer, Blocks, Header
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.robot import Description, read_placement
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Answer, Blocks, Header, check_blocks
+from featherbench_oracles.core.protocol import Unsupported
+from featherbench_oracles.core.robot import Description, read_placement
 
-# The types of loops that every engine is asked to hold, and by what. An engine that has more of them names them in its `loop_types`.
+# The types of loops that every engine is asked to hold, and by what. An engine that has more of them names them in its `LoopMethods`.
 TYPES = {"fixed": "weld", "spherical": "point", "point": "point", "revolute": "two points"}
 # The joints whose coordinates come back from every engine.
 JOINTS = ("revolute", "prismatic", "helical", "free")
@@ -145,7 +145,7 @@ class Mechanics(Protocol):
         Parameters
         ----------
         method : str
-            One of the engine's `loop_accelerations`.
+            One of `LoopMethods.accelerations`.
         q, v, tau : ndarray
             The state and the joints' forces, neutral.
 
@@ -163,7 +163,7 @@ class Mechanics(Protocol):
         Parameters
         ----------
         method : str
-            One of the engine's `loop_motions`.
+            One of `LoopMethods.motions`.
         q, v : ndarray
             The state at its beginning, neutral.
         motion : Motion
@@ -199,52 +199,73 @@ class Motion:
 MakeMechanics = Callable[[Description, list[Tie], Drive], Mechanics]
 
 
+@dataclass(frozen=True)
+class LoopMethods:
+    """How an engine holds loops.
+
+    Attributes
+    ----------
+    make : callable
+        `(description, ties, drive) -> Mechanics`.
+    accelerations, motions : sequence of str
+        The methods of both.
+    types : mapping of str to str
+        The types of loops that it holds, and by what.
+    lacks : mapping of str to str
+        Why it holds no loop of another type.
+    """
+
+    make: MakeMechanics
+    accelerations: Sequence[str]
+    motions: Sequence[str]
+    types: Mapping[str, str] = field(default_factory=lambda: TYPES)
+    lacks: Mapping[str, str] = field(default_factory=dict)
+
+
 class Loops:
     """The robot with loops of a session.
 
     Parameters
     ----------
-    engine : Any
-        The engine: if it has `loop_mechanics`, also its `loop_accelerations` and `loop_motions`, lists of methods. `loop_types` are its
-        types of loops, and `loop_lacks` says of others why it has none.
+    engine : str
+        The engine's name.
+    methods : LoopMethods, optional
+        How it holds loops, if it does.
     """
 
-    def __init__(self, engine: Any) -> None:
-        self.engine = engine.name
-        self.make: MakeMechanics | None = getattr(engine, "loop_mechanics", None)
-        self.methods: Mapping[str, list[str]] = {
-            "accelerations": list(getattr(engine, "loop_accelerations", ())),
-            "motions": list(getattr(engine, "loop_motions", ())),
-        }
-        self.types: Mapping[str, str] = getattr(engine, "loop_types", TYPES)
-        self.lacks: Mapping[str, str] = getattr(engine, "loop_lacks", {})
+    def __init__(self, engine: str, methods: LoopMethods | None) -> None:
+        self.engine, self.methods = engine, methods
         self.robot: tuple[Description, Mechanics] | None = None
 
     def hello(self) -> Header:
         """Tell what is offered."""
-        return {"loops": {**self.methods, "types": dict(self.types)}} if self.make else {}
+        if self.methods is None:
+            return {}
+        offered = {"accelerations": self.methods.accelerations, "motions": self.methods.motions}
+        return {"loops": {**{kind: list(names) for kind, names in offered.items()}, "types": dict(self.methods.types)}}
 
     def prepare(self, header: Header, _blocks: Blocks) -> Answer:
         """Build a robot with its loops."""
         self.robot = None
-        if self.make is None:
+        if self.methods is None:
             raise Unsupported(f"{self.engine} is not asked about loops")
         description = Description.read(header["model"])
         for body in description.bodies:
             if body.joint.type not in JOINTS:
                 raise Unsupported(f"the coordinates of {body.joint.type} joints do not come back ({body.joint.name})")
-        loops = [self._read(item, description) for item in header["model"].get("loops", [])]
+        loops = [_read(item, description, self.methods) for item in header["model"].get("loops", [])]
         given = header.get("drive")
         drive = Drive(np.zeros(description.nv)) if given is None else _drive(given, description)
-        self.robot = description, self.make(description, loops, drive)
+        self.robot = description, self.methods.make(description, loops, drive)
         driven = {} if given is None else {"driven": True}
-        return {"nq": description.nq, "nv": description.nv, **driven, "held": {loop.name: self.types[loop.type] for loop in loops}}, {}
+        held = {loop.name: self.methods.types[loop.type] for loop in loops}
+        return {"nq": description.nq, "nv": description.nv, **driven, "held": held}, {}
 
     def accelerations(self, header: Header, blocks: Blocks) -> Answer:
         """Answer block `acceleration` of shape (states, nv), and `nanoseconds` of `repeats` rounds."""
-        description, robot = self._asked(header, "accelerations")
+        description, robot = self._asked(header["method"], "accelerations")
         count, repeats = header["count"], header.get("repeats", 1)
-        _check(blocks, {"q": (count, description.nq), "v": (count, description.nv), "tau": (count, description.nv)})
+        check_blocks(blocks, {"q": (count, description.nq), "v": (count, description.nv), "tau": (count, description.nv)})
         if not (count > 0 and repeats > 0):
             raise ValueError("count and repeats must be positive")
         found, nanoseconds = np.empty((count, description.nv)), 0
@@ -256,9 +277,9 @@ class Loops:
 
     def motion(self, header: Header, blocks: Blocks) -> Answer:
         """Answer blocks `q` and `v`, a row after each `every` steps, and `nanoseconds` of all steps."""
-        description, robot = self._asked(header, "motions")
+        description, robot = self._asked(header["method"], "motions")
         motion = Motion(header["dt"], header["steps"], header["every"])
-        _check(blocks, {"q": (description.nq,), "v": (description.nv,)})
+        check_blocks(blocks, {"q": (description.nq,), "v": (description.nv,)})
         if not (np.isfinite(motion.dt) and motion.dt > 0):
             raise ValueError("dt must be positive and finite")
         if motion.steps < 1 or motion.every < 1 or motion.steps % motion.every:
@@ -268,25 +289,26 @@ class Loops:
         q, v, nanoseconds = robot.move(header["method"], blocks["q"], blocks["v"], motion)
         return {"nanoseconds": nanoseconds, "settings": robot.settings(header["method"])}, {"q": q, "v": v}
 
-    def _read(self, item: Header, robot: Description) -> Tie:
-        """Read a loop of a description."""
-        kind = item["type"]
-        if kind in self.lacks:
-            raise Unsupported(f"loop {item['name']}: {self.lacks[kind]}")
-        if kind not in self.types or (kind == "point" and not all(item["axes"])):
-            raise Unsupported(
-                f"loop {item['name']}: engines are asked about loops that are fixed, spherical, revolute or a point along all axes, "
-                "a distance, a gear or a mimic, where they have them"
-            )
-        return _follow(item, robot) if kind in ("gear", "mimic") else _between(item, len(robot.bodies))
-
-    def _asked(self, header: Header, kind: str) -> tuple[Description, Mechanics]:
+    def _asked(self, method: str, kind: str) -> tuple[Description, Mechanics]:
         """Find the robot, if it and the method are there."""
-        if header["method"] not in self.methods[kind]:
-            raise Unsupported(f"{self.engine} offers no {kind} of loops by {header['method']}")
+        if method not in self.hello().get("loops", {}).get(kind, ()):
+            raise Unsupported(f"{self.engine} offers no {kind} of loops by {method}")
         if self.robot is None:
             raise ValueError("no robot with loops was given before")
         return self.robot
+
+
+def _read(item: Header, robot: Description, methods: LoopMethods) -> Tie:
+    """Read a loop of a description."""
+    kind = item["type"]
+    if kind in methods.lacks:
+        raise Unsupported(f"loop {item['name']}: {methods.lacks[kind]}")
+    if kind not in methods.types or (kind == "point" and not all(item["axes"])):
+        raise Unsupported(
+            f"loop {item['name']}: engines are asked about loops that are fixed, spherical, revolute or a point along all axes, "
+            "a distance, a gear or a mimic, where they have them"
+        )
+    return _follow(item, robot) if kind in ("gear", "mimic") else _between(item, len(robot.bodies))
 
 
 def _between(item: Header, bodies: int) -> Loop:
@@ -348,12 +370,3 @@ def _drive(given: Header, robot: Description) -> Drive:
             raise ValueError(f"drive: both ends of a spring are on body {spring.first.body}")
         springs.append(spring)
     return Drive(tau, tuple(springs))
-
-
-def _check(blocks: Blocks, shapes: Mapping[str, tuple[int, ...]]) -> None:
-    """Check that blocks are there, of their shape, and finite: engines end the process at other numbers, or never come back."""
-    for name, shape in shapes.items():
-        if name not in blocks or blocks[name].shape != shape:
-            raise ValueError(f"block {name} is missing or not of shape {list(shape)}")
-        if not np.isfinite(blocks[name]).all():
-            raise ValueError(f"block {name} has a number that is not finite")

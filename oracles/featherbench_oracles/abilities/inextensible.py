@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.rods import RodModel
+from featherbench_oracles.abilities.rods import RodModel
+from featherbench_oracles.core.algebra import Array
 
 # The step of the stiffness by central differences. Forces are odd in the angles: an error of 1e-10, and roundings of 1e-11.
 STEP = 1e-5

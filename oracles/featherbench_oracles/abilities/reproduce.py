@@ -14,7 +14,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from featherbench_oracles.messages import read_message, write_message
+from featherbench_oracles.core.messages import read_message, write_message
 
 
 def reproduction(name: str) -> Callable[[int], float]:

@@ -9,9 +9,9 @@ from typing import Protocol
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Answer, Blocks, Header
-from featherbench_oracles.protocol import Unsupported
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Answer, Blocks, Header
+from featherbench_oracles.core.protocol import Unsupported
 
 
 @dataclass(frozen=True)

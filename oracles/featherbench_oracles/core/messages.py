@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from typing import Any, BinaryIO
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array
+from featherbench_oracles.core.algebra import Array
 
 Blocks = dict[str, Array]
 Header = dict[str, Any]
@@ -73,3 +74,35 @@ def write_message(stream: BinaryIO, header: Header, blocks: Blocks | None = None
     for block in (blocks or {}).values():
         stream.write(np.ascontiguousarray(block, "<f8").tobytes())
     stream.flush()
+
+
+def check_blocks(blocks: Blocks, shapes: Mapping[str, tuple[int, ...]], *, finite: bool = True) -> None:
+    """Check the blocks of a request: engines end the process at some numbers, or never come back.
+
+    Parameters
+    ----------
+    blocks : dict of str to ndarray
+        What was sent.
+    shapes : mapping of str to tuple of int
+        The shape of each block.
+    finite : bool
+        Whether all numbers must be finite.
+
+    Raises
+    ------
+    ValueError
+        If a block is missing, has another shape, or has a number that is not finite.
+    """
+    for name, shape in shapes.items():
+        if name not in blocks or blocks[name].shape != shape:
+            raise ValueError(f"block {name} is missing or not of shape {list(shape)}")
+        if finite and not np.isfinite(blocks[name]).all():
+            raise ValueError(f"block {name} has a number that is not finite")
+
+
+def limits(header: Header) -> tuple[float, int]:
+    """Take the tolerance of a solver and its cap on iterations from a request, which must be positive."""
+    tolerance, iterations = header["tolerance"], header["iterations"]
+    if not (tolerance > 0 and np.isfinite(tolerance) and iterations > 0):
+        raise ValueError("tolerance and iterations must be positive")
+    return tolerance, iterations

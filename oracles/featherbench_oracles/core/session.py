@@ -15,17 +15,29 @@ from typing import Any
 
 import numpy as np
 
-from featherbench_oracles.clock import Measured, MeasuredStream, Stream, TimedCalls
-from featherbench_oracles.contact_steps import StepsOnContacts
-from featherbench_oracles.contacts import Contacts
-from featherbench_oracles.examination import examined
-from featherbench_oracles.loops import Loops
-from featherbench_oracles.messages import Answer, Blocks, Header, read_message, write_message
-from featherbench_oracles.protocol import AS_READ, PROTOCOL, SHAPES, Engine, Reading, State, Unsupported
-from featherbench_oracles.robot import Description
-from featherbench_oracles.rods import Rods
-from featherbench_oracles.scenes import Scenes
-from featherbench_oracles.semidefinite import SemidefiniteLeastSquares
+from featherbench_oracles.abilities import (
+    HasContactRelaxations,
+    HasContactSolvers,
+    HasContactSteps,
+    HasLoops,
+    HasResidual,
+    HasRods,
+    HasSceneDerivatives,
+    HasScenes,
+    HasSemidefiniteSolvers,
+    ReadsFiles,
+)
+from featherbench_oracles.abilities.contact_steps import StepsOnContacts
+from featherbench_oracles.abilities.contacts import Contacts
+from featherbench_oracles.abilities.loops import Loops
+from featherbench_oracles.abilities.rods import Rods
+from featherbench_oracles.abilities.scenes import Scenes
+from featherbench_oracles.abilities.semidefinite import SemidefiniteLeastSquares
+from featherbench_oracles.core.clock import Measured, MeasuredStream, Stream, TimedCalls
+from featherbench_oracles.core.examination import examined
+from featherbench_oracles.core.messages import Answer, Blocks, Header, check_blocks, read_message, write_message
+from featherbench_oracles.core.protocol import AS_READ, PROTOCOL, SHAPES, Engine, State, Unsupported
+from featherbench_oracles.core.robot import Description
 
 
 class Session:
@@ -39,12 +51,22 @@ class Session:
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
-        self.contacts = Contacts(engine.name, getattr(engine, "contact_solvers", {}), getattr(engine, "contact_relaxations", {}))
-        self.contact_steps = StepsOnContacts(engine.name, getattr(engine, "contact_steps", {}))
-        self.loops = Loops(engine)
-        self.semidefinite = SemidefiniteLeastSquares(engine.name, getattr(engine, "semidefinite_solvers", {}))
-        self.rods = Rods(engine.name, getattr(engine, "rods", {}))
-        self.scenes = Scenes(engine.name, getattr(engine, "scene_variants", {}), getattr(engine, "scene_derivatives", {}))
+        self.contacts = Contacts(
+            engine.name,
+            engine.contact_solvers if isinstance(engine, HasContactSolvers) else {},
+            engine.contact_relaxations if isinstance(engine, HasContactRelaxations) else {},
+        )
+        self.contact_steps = StepsOnContacts(engine.name, engine.contact_steps if isinstance(engine, HasContactSteps) else {})
+        self.loops = Loops(engine.name, engine.loops if isinstance(engine, HasLoops) else None)
+        self.semidefinite = SemidefiniteLeastSquares(
+            engine.name, engine.semidefinite_solvers if isinstance(engine, HasSemidefiniteSolvers) else {}
+        )
+        self.rods = Rods(engine.name, engine.rods if isinstance(engine, HasRods) else {})
+        self.scenes = Scenes(
+            engine.name,
+            engine.scene_variants if isinstance(engine, HasScenes) else {},
+            engine.scene_derivatives if isinstance(engine, HasSceneDerivatives) else {},
+        )
         self.description: Description | None = None
         self.robot: Any = None
         self.states: Blocks | None = None
@@ -113,8 +135,8 @@ class Session:
         }
         hello |= self.contact_steps.hello() | self.loops.hello() | self.scenes.hello()
         hello |= {key: list(solvers) for key, solvers in listed.items() if solvers}
-        if hasattr(engine, "residual"):
-            hello["residual"] = {"acceleration": bool(getattr(engine, "residual_acceleration", False))}
+        if isinstance(engine, HasResidual):
+            hello["residual"] = {"acceleration": engine.residual_acceleration}
         if any(isinstance(function, Measured) for by_method in engine.quantities.values() for function in by_method.values()):
             return {**hello, "clock": True, "relocate": True}, {}
         timed = {name: [m for m, f in by_method.items() if isinstance(f, TimedCalls)] for name, by_method in engine.quantities.items()}
@@ -140,10 +162,9 @@ class Session:
         form, base = header["format"], header.get("base", "fixed")
         if form not in ("urdf", "mjcf") or base not in ("fixed", "free"):
             raise ValueError(f"there is no format {form} with base {base}")
-        reader: Callable[[Path, str, str], Reading] | None = getattr(self.engine, "read", None)
-        if reader is None:
+        if not isinstance(self.engine, ReadsFiles):
             raise Unsupported(f"{self.engine.name} reads no files")
-        reading = reader(examined(Path(header["file"])), form, base)
+        reading = self.engine.read(examined(Path(header["file"])), form, base)
         self.description, self.robot = reading.description, reading.robot
         answer = {"nq": self.description.nq, "nv": self.description.nv, "model": reading.model, "notes": reading.notes}
         if reading.written is not None:
@@ -159,18 +180,14 @@ class Session:
         self.states = self.stream = self.measured = None
         n, nq, nv, bodies = header["count"], self.description.nq, self.description.nv, len(self.description.bodies)
         shapes = {"q": (n, nq), "v": (n, nv), "a": (n, nv), "tau": (n, nv), "wrench": (n, bodies, 6), "probe": (4, nv)}
-        for name, shape in shapes.items():
-            if name not in blocks or blocks[name].shape != shape:
-                raise ValueError(f"block {name} is missing or not of shape {list(shape)}")
+        check_blocks(blocks, shapes, finite=False)
         self.states = blocks
         return {}, {}
 
     def evaluate(self, header: Header, _blocks: Blocks) -> Answer:
         """Answer one quantity by one method over a range of the states: block `value` of shape (count, *shape of the quantity)."""
         function, description, states, body = self._asked(header)
-        quantity, first, count = (header[key] for key in ("quantity", "first", "count"))
-        if not 0 <= first <= first + count <= len(states["q"]):
-            raise ValueError(f"states {first}..{first + count} do not exist")
+        quantity, (first, count) = header["quantity"], _range(header, states)
         entries = description.tree_sparse() if quantity == "mass_matrix_sparse" else None
         sizes = {"nv": description.nv, "bodies": len(description.bodies), "stored": len(entries[0]) if entries else 0}
         shape = tuple(sizes[n] if isinstance(n, str) else n for n in SHAPES[quantity])
@@ -182,18 +199,13 @@ class Session:
 
     def residual(self, header: Header, _blocks: Blocks) -> Answer:
         """Answer the residual r(q, v, a) over a range of the states: block `value` of shape (count, nv)."""
-        function: Callable[[Any, State], Any] | None = getattr(self.engine, "residual", None)
-        if function is None:
+        if not isinstance(self.engine, HasResidual):
             raise Unsupported(f"{self.engine.name} has no residual")
-        if self.description is None or self.states is None:
-            raise ValueError("no model and states were given before")
-        first, count = header["first"], header["count"]
-        if not 0 <= first <= first + count <= len(self.states["q"]):
-            raise ValueError(f"states {first}..{first + count} do not exist")
-        nv = self.description.nv
+        description, states = self._held()
+        (first, count), nv = _range(header, states), description.nv
         value = np.empty((count, nv))
         for k in range(count):
-            row = np.asarray(function(self.robot, _state(self.states, first + k, 0)), dtype=float)
+            row = np.asarray(self.engine.residual(self.robot, _state(states, first + k, 0)), dtype=float)
             if row.shape != (nv,) or not np.isfinite(row).all():
                 raise ValueError(f"the residual of state {first + k} is not {nv} finite numbers: its shape is {list(row.shape)}")
             value[k] = row
@@ -237,14 +249,27 @@ class Session:
         quantity, method = header["quantity"], header["method"]
         if method not in self.engine.quantities.get(quantity, {}):
             raise Unsupported(f"{self.engine.name} offers no method {method} for {quantity}")
-        if self.description is None or self.states is None:
-            raise ValueError("no model and states were given before")
+        description, states = self._held()
         if self.as_read and quantity not in AS_READ:
             raise Unsupported(f"{quantity} is not told of a robot as read: its bodies need not be those of the description")
         body = header["body"] if quantity == "body_jacobian" else 0
-        if not 0 <= body < len(self.description.bodies):
+        if not 0 <= body < len(description.bodies):
             raise ValueError(f"body {body} does not exist")
-        return self.engine.quantities[quantity][method], self.description, self.states, body
+        return self.engine.quantities[quantity][method], description, states, body
+
+    def _held(self) -> tuple[Description, Blocks]:
+        """Find the robot and its states, if they are there."""
+        if self.description is None or self.states is None:
+            raise ValueError("no model and states were given before")
+        return self.description, self.states
+
+
+def _range(header: Header, states: Blocks) -> tuple[int, int]:
+    """Take the first state and their number from a request, if they exist."""
+    first, count = header["first"], header["count"]
+    if not 0 <= first <= first + count <= len(states["q"]):
+        raise ValueError(f"states {first}..{first + count} do not exist")
+    return first, count
 
 
 def _state(states: Blocks, k: int, body: int) -> State:

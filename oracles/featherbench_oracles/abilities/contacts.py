@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Answer, Blocks, Header
-from featherbench_oracles.protocol import Unsupported
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Answer, Blocks, Header, check_blocks, limits
+from featherbench_oracles.core.protocol import Unsupported
 
 
 @dataclass(frozen=True)
@@ -69,28 +69,50 @@ SolverTable = Mapping[str, MakeSolver]
 MOST_NUMBERS = 100_000_000
 
 
-def check_blocks(blocks: Blocks, shapes: Mapping[str, tuple[int, ...]]) -> None:
-    """Check the numbers of contacts.
+class Solution(Protocol):
+    """What an answer tells of each solution."""
+
+    @property
+    def iterations(self) -> int:
+        """As the engine counts them."""
+
+    @property
+    def nanoseconds(self) -> float:
+        """The engine's own time."""
+
+
+AnySolution = TypeVar("AnySolution", bound=Solution)
+
+
+def check_contacts(blocks: Blocks, shapes: Mapping[str, tuple[int, ...]]) -> None:
+    """Check the numbers of contacts: as `check_blocks`, and no friction is negative."""
+    check_blocks(blocks, shapes)
+    if (blocks["friction"] < 0).any():
+        raise ValueError("a friction is negative")
+
+
+def in_turn(solve: Callable[[int], AnySolution], problems: int, first: int, count: int) -> tuple[Header, list[AnySolution]]:
+    """Solve a range of problems, which begin again at their end.
 
     Parameters
     ----------
-    blocks : Blocks
-        What was sent; `friction` is among it.
-    shapes : mapping of str to tuple of int
-        The shape of each block.
+    solve : callable
+        Solves the problem of a number.
+    problems : int
+        How many there are.
+    first, count : int
+        The range.
 
-    Raises
-    ------
-    ValueError
-        If a block is missing, has another shape or a number that is not finite, or a friction is negative.
+    Returns
+    -------
+    header : dict
+        `nanoseconds` of all solutions, and `iterations` of those that are told.
+    told : list
+        The solutions of the last round: a time needs no impulses.
     """
-    for name, shape in shapes.items():
-        if name not in blocks or blocks[name].shape != shape:
-            raise ValueError(f"block {name} is missing or not of shape {list(shape)}")
-        if not np.isfinite(blocks[name]).all():
-            raise ValueError(f"block {name} has a number that is not finite")
-    if (blocks["friction"] < 0).any():
-        raise ValueError("a friction is negative")
+    solved = [solve((first + k) % problems) for k in range(count)]
+    told = solved[-problems:]
+    return {"nanoseconds": sum(one.nanoseconds for one in solved), "iterations": [one.iterations for one in told]}, told
 
 
 class Contacts:
@@ -119,7 +141,7 @@ class Contacts:
         if count * rows * rows > MOST_NUMBERS:
             raise ValueError(f"{count} problems of {contacts} contacts are more than {MOST_NUMBERS} numbers")
         shapes = {"delassus": (count, rows, rows), "free": (count, rows), "friction": (count, contacts)}
-        check_blocks(blocks, shapes)
+        check_contacts(blocks, shapes)
         each = zip(blocks["delassus"], blocks["free"], blocks["friction"], strict=True)
         self.problems = [ContactProblem(*numbers) for numbers in each]
         return {}, {}
@@ -127,26 +149,16 @@ class Contacts:
     def solve(self, header: Header, _blocks: Blocks) -> Answer:
         """Solve a range of the problems, which begin again at their end: block `impulses` of shape (count, rows)."""
         method, first, count = header["method"], header["first"], header["count"]
-        tolerance, iterations = header["tolerance"], header["iterations"]
         make = self.solvers.get(method) or self.relaxations.get(method)
         if make is None:
             raise Unsupported(f"{self.engine} offers no contact solver {method}")
         if self.problems is None:
             raise ValueError("no contact problems were given before")
-        if not (tolerance > 0 and np.isfinite(tolerance) and iterations > 0):
-            raise ValueError("tolerance and iterations must be positive")
+        asked = method, *limits(header)
         if first < 0 or count < 1:
             raise ValueError(f"there are no {count} problems from {first} on")
-        asked = method, tolerance, iterations
         if self.ready is None or self.ready[0] != asked:
-            self.ready = asked, make(self.problems, tolerance, iterations)
-        solver, all_of_them = self.ready[1], len(self.problems)
-        solved = [solver.solve((first + k) % all_of_them) for k in range(count)]
-        # A time needs no impulses: those of a last round are enough.
-        told = solved[-all_of_them:]
-        answer = {
-            "nanoseconds": sum(one.nanoseconds for one in solved),
-            "iterations": [one.iterations for one in told],
-            "converged": [one.converged for one in told],
-        }
+            self.ready = asked, make(self.problems, *asked[1:])
+        answer, told = in_turn(self.ready[1].solve, len(self.problems), first, count)
+        answer["converged"] = [one.converged for one in told]
         return answer, {"impulses": np.array([one.impulses for one in told])}

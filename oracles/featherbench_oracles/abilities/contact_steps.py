@@ -12,11 +12,11 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.contacts import check_blocks
-from featherbench_oracles.messages import Answer, Blocks, Header
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.robot import Description
+from featherbench_oracles.abilities.contacts import check_contacts, in_turn
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Answer, Blocks, Header, limits
+from featherbench_oracles.core.protocol import Unsupported
+from featherbench_oracles.core.robot import Description
 
 # The most numbers of impulses and states at once: 80 MB.
 MOST_NUMBERS = 10_000_000
@@ -138,30 +138,21 @@ class StepsOnContacts:
             raise ValueError("dt must be positive and finite")
         shapes = {"points": (contacts, 3), "friction": (contacts,)}
         shapes |= {"q": (count, robot.nq), "v": (count, robot.nv), "tau": (count, robot.nv)}
-        check_blocks(blocks, shapes)
+        check_contacts(blocks, shapes)
         self.steps = ContactSteps(robot, dt, bodies, **{name: blocks[name] for name in shapes})
         return {"nq": robot.nq, "nv": robot.nv}, {}
 
     def solve(self, header: Header, _blocks: Blocks) -> Answer:
         """Solve a range of the states, which begin again at their end: block `impulses` of shape (count, 3 contacts)."""
         method, first, count = header["method"], header["first"], header["count"]
-        asked = method, header["tolerance"], header["iterations"]
         if method not in self.methods:
             raise Unsupported(f"{self.engine} offers no step on contacts by {method}")
         if self.steps is None:
             raise ValueError("no robot on contacts was given before")
-        if not (asked[1] > 0 and np.isfinite(asked[1]) and asked[2] > 0):
-            raise ValueError("tolerance and iterations must be positive")
+        asked = method, *limits(header)
         if first < 0 or count < 1:
             raise ValueError(f"there are no {count} states from {first} on")
         if self.ready is None or self.ready[0] != asked:
-            self.ready = asked, self.methods[method].make(self.steps, asked[1], asked[2])
-        solver, all_of_them = self.ready[1], len(self.steps.q)
-        solved = [solver.solve((first + k) % all_of_them) for k in range(count)]
-        # A time needs no impulses: those of a last round are enough.
-        told = solved[-all_of_them:]
-        answer = {
-            "nanoseconds": sum(one.nanoseconds for one in solved),
-            "iterations": [one.iterations for one in told],
-        }
+            self.ready = asked, self.methods[method].make(self.steps, *asked[1:])
+        answer, told = in_turn(self.ready[1].solve, len(self.steps.q), first, count)
         return answer, {"impulses": np.array([one.impulses.ravel() for one in told])}

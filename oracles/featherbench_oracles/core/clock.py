@@ -18,9 +18,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.change import CoordinateChange
-from featherbench_oracles.protocol import State
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.change import CoordinateChange
+from featherbench_oracles.core.protocol import State
 
 SAMPLE = 64  # calls that measure the overhead: at most these; else those of the loop plus two, so that one interruption is no median
 WARM = 5  # calls before each loop that are not timed, at most: after a pause the first call takes several times as long

@@ -19,9 +19,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array, skew
-from featherbench_oracles.change import CoordinateChange
-from featherbench_oracles.protocol import State
+from featherbench_oracles.core.algebra import Array, skew
+from featherbench_oracles.core.change import CoordinateChange
+from featherbench_oracles.core.protocol import State
 
 
 @dataclass(frozen=True)

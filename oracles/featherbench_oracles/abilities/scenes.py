@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Answer, Blocks, Header
-from featherbench_oracles.protocol import Unsupported
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Answer, Blocks, Header
+from featherbench_oracles.core.protocol import Unsupported
 
 # The most steps of a motion.
 MOST_STEPS = 1_000_000

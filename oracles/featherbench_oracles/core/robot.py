@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array, symmetric
+from featherbench_oracles.core.algebra import Array, symmetric
 
 # joint type -> (numbers in q, numbers in v)
 JOINT_SIZES = {

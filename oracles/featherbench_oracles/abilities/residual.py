@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.protocol import Quantities, State, readback_row
-from featherbench_oracles.robot import Description
-from featherbench_oracles.session import serve
+from featherbench_oracles.abilities import HasResidual
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.protocol import Quantities, State, readback_row
+from featherbench_oracles.core.robot import Description
+from featherbench_oracles.core.session import serve
 
 Residual = Callable[[Array, Array, Array], Array]
 
@@ -39,7 +40,7 @@ class DescribedRobot:
         return [readback_row(body.mass, body.com, body.inertia, body.joint.rotation, body.joint.translation) for body in rows]
 
 
-class ResidualEngine:
+class ResidualEngine(HasResidual):
     """An engine that has a residual and no quantities.
 
     Parameters

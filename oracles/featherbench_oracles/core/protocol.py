@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Header
-from featherbench_oracles.robot import Description
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.robot import Description
 
 PROTOCOL = 1
 
@@ -104,7 +103,7 @@ Quantities = Mapping[str, Mapping[str, Callable[[Any, State], Any]]]
 
 
 class Engine(Protocol):
-    """The interface of an engine, which `session.serve` takes. An engine that reads files is a `FileReader`.
+    """The interface of an engine, which `session.serve` takes. What it may do beside this, `abilities` says.
 
     A function of `quantities` answers for one state, in neutral coordinates, with an array or a list of this shape:
 
@@ -164,35 +163,6 @@ class Engine(Protocol):
         ------
         Unsupported
             If the engine cannot hold the robot; the message says why.
-        """
-
-
-class FileReader(Engine, Protocol):
-    """The interface of an engine that reads files."""
-
-    def read(self, path: Path, form: str, base: str) -> Reading:
-        """Read a file by the engine's own parser.
-
-        Parameters
-        ----------
-        path : Path
-            The file, which has passed the checks of `examination`.
-        form : str
-            `urdf` or `mjcf`.
-        base : str
-            `fixed` or `free`: whether the root of a URDF floats. An MJCF says itself what floats.
-
-        Returns
-        -------
-        Reading
-            What the engine holds of the file.
-
-        Raises
-        ------
-        Unsupported
-            If descriptions cannot hold what the engine read.
-        ValueError
-            If the engine rejects the file.
         """
 
 

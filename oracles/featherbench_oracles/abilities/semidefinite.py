@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array
-from featherbench_oracles.messages import Answer, Blocks, Header
-from featherbench_oracles.protocol import Unsupported
+from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Answer, Blocks, Header, limits
+from featherbench_oracles.core.protocol import Unsupported
 
 # The size of a pseudo-inertia.
 SIZE = 4
@@ -86,11 +86,9 @@ class SemidefiniteLeastSquares:
     def solve(self, header: Header, blocks: Blocks) -> Answer:
         """Solve a problem: blocks `x` of shape (n,) and `multipliers` of shape (bodies, 16)."""
         method = header["method"]
-        tolerance, iterations = header["tolerance"], header["iterations"]
         if method not in self.solvers:
             raise Unsupported(f"{self.engine} offers no semidefinite least squares by {method}")
-        if not (tolerance > 0 and np.isfinite(tolerance) and iterations > 0):
-            raise ValueError("tolerance and iterations must be positive")
+        tolerance, iterations = limits(header)
         found = self.solvers[method](problem(blocks), tolerance, iterations)
         answer = {
             "converged": found.converged,

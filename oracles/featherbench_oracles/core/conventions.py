@@ -13,7 +13,7 @@ from math import cos, sin
 import numpy as np
 from numpy.typing import ArrayLike
 
-from featherbench_oracles.algebra import Array, skew
+from featherbench_oracles.core.algebra import Array, skew
 
 CLOSE, APART = 1e-12, 1e-2  # rounding of numbers of size one; much less than a wrong convention changes
 

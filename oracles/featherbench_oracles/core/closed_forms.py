@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array, rotation, skew
-from featherbench_oracles.robot import Joint
+from featherbench_oracles.core.algebra import Array, rotation, skew
+from featherbench_oracles.core.robot import Joint
 
 X, Y, Z = np.eye(3)
 

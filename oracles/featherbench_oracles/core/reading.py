@@ -22,10 +22,10 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from featherbench_oracles.algebra import Array, skew
-from featherbench_oracles.messages import Header
-from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.robot import JOINT_SIZES, WITH_AXIS
+from featherbench_oracles.core.algebra import Array, skew
+from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.protocol import Unsupported
+from featherbench_oracles.core.robot import JOINT_SIZES, WITH_AXIS
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from featherbench_oracles.algebra import Array
+from featherbench_oracles.core.algebra import Array
 
 
 @dataclass(frozen=True)
