@@ -20,7 +20,7 @@ mod samples;
 
 use crate::{Error, Linear, Space};
 use featherbench_dynamics::{
-    ParameterSensitivity, State, TreeSparse, inertial_parameters, inverse_dynamics, mass_matrix, torque_regressor,
+    self as dynamics, ParameterSensitivity, TreeSparse, inertial_parameters, inverse_dynamics, mass_matrix, torque_regressor,
 };
 use featherbench_model::{Description, DimensionError, Model, TargetField};
 use featherbench_spatial::Vec3;
@@ -303,8 +303,13 @@ impl RobotResponse {
             Quantity::Acceleration => {
                 let force: Vec<f64> = drive.iter().zip(&losses).map(|(tau, loss)| tau - loss).collect();
                 let mut a = vec![0.0; nv];
-                ParameterSensitivity::new(&model).run(&model, State { q, v, given: &force, wrenches: None }, &mut a, &mut by_parameters)?;
-                let factors = mass_matrix(&model, q)?.into_ltdl().map_err(featherbench_dynamics::Error::from)?;
+                ParameterSensitivity::new(&model).run(
+                    &model,
+                    dynamics::State { q, v, given: &force, wrenches: None },
+                    &mut a,
+                    &mut by_parameters,
+                )?;
+                let factors = mass_matrix(&model, q)?.into_ltdl().map_err(dynamics::Error::from)?;
                 (a.clone(), a, DMatrix::from_row_slice(nv, nv, &factors.dense_inverse()) * -1.0)
             }
             Quantity::Torque => {
