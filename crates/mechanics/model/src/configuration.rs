@@ -22,9 +22,6 @@ use featherbench_spatial::{Angle, Motion, Quaternion, Real, Vec3};
 
 impl Topology {
     /// The neutral configuration into `q`: zeros, and quaternions without rotation.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when `q` does not fit.
     pub fn neutral<T: Real>(&self, q: &mut [T]) -> Result<(), DimensionError> {
         self.expect_q(q)?;
         q.fill(T::zero());
@@ -46,9 +43,6 @@ impl Topology {
     /// assert!((v[2] - std::f64::consts::PI).abs() < 1e-15);
     /// # Ok::<(), featherbench_model::DimensionError>(())
     /// ```
-    ///
-    /// # Errors
-    /// [`DimensionError`] when an argument does not fit.
     pub fn integrate<T: Angle>(&self, q: &[T], v: &[T], result: &mut [T]) -> Result<(), DimensionError> {
         self.expect_q(q)?;
         self.expect_v(v)?;
@@ -60,9 +54,6 @@ impl Topology {
     }
 
     /// `v = to ⊖ from`: the velocity that leads from `from` to `to` in a unit of time. Rotations take the shortest way, of at most π.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when an argument does not fit.
     pub fn difference<T: Angle>(&self, from: &[T], to: &[T], v: &mut [T]) -> Result<(), DimensionError> {
         self.expect_q(from)?;
         self.expect_q(to)?;
@@ -74,9 +65,6 @@ impl Topology {
     }
 
     /// The configuration at the share `part` of the way between two: `from ⊕ part·(to ⊖ from)`.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when an argument does not fit.
     pub fn interpolate<T: Angle>(&self, from: &[T], to: &[T], part: T, result: &mut [T]) -> Result<(), DimensionError> {
         self.expect_q(from)?;
         self.expect_q(to)?;
@@ -90,9 +78,6 @@ impl Topology {
     }
 
     /// The length of `to ⊖ from`, radians and metres taken as equal.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when an argument does not fit.
     pub fn distance<T: Angle>(&self, from: &[T], to: &[T]) -> Result<T, DimensionError> {
         self.expect_q(from)?;
         self.expect_q(to)?;
@@ -106,9 +91,6 @@ impl Topology {
     }
 
     /// Gives each quaternion of `q` the length one. One shorter than 10⁻¹⁸ stands for no rotation, and becomes the identity.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when `q` does not fit.
     pub fn normalise<T: Angle>(&self, q: &mut [T]) -> Result<(), DimensionError> {
         self.expect_q(q)?;
         for at in self.quaternions() {
@@ -204,9 +186,6 @@ pub fn neutral<T: Real>(topology: &Topology) -> Vec<T> {
 }
 
 /// `q ⊕ v` ([`Topology::integrate`]); it allocates.
-///
-/// # Errors
-/// [`DimensionError`] when an argument does not fit.
 pub fn integrate<T: Angle>(topology: &Topology, q: &[T], v: &[T]) -> Result<Vec<T>, DimensionError> {
     let mut result = vec![T::zero(); topology.nq()];
     topology.integrate(q, v, &mut result)?;
@@ -214,9 +193,6 @@ pub fn integrate<T: Angle>(topology: &Topology, q: &[T], v: &[T]) -> Result<Vec<
 }
 
 /// `to ⊖ from` ([`Topology::difference`]); it allocates.
-///
-/// # Errors
-/// [`DimensionError`] when an argument does not fit.
 pub fn difference<T: Angle>(topology: &Topology, from: &[T], to: &[T]) -> Result<Vec<T>, DimensionError> {
     let mut v = vec![T::zero(); topology.nv()];
     topology.difference(from, to, &mut v)?;
@@ -224,9 +200,6 @@ pub fn difference<T: Angle>(topology: &Topology, from: &[T], to: &[T]) -> Result
 }
 
 /// `from ⊕ part·(to ⊖ from)` ([`Topology::interpolate`]); it allocates.
-///
-/// # Errors
-/// [`DimensionError`] when an argument does not fit.
 pub fn interpolate<T: Angle>(topology: &Topology, from: &[T], to: &[T], part: T) -> Result<Vec<T>, DimensionError> {
     let mut result = vec![T::zero(); topology.nq()];
     topology.interpolate(from, to, part, &mut result)?;

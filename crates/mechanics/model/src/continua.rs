@@ -3,7 +3,8 @@
 //! Continua are data. A [`Model`](crate::Model) is a rigid tree, and refuses a description that has them; `featherbench_continua` makes
 //! elements of them. A body is named by its index in the description.
 
-use crate::validate::{ROTATION_TOLERANCE, rotation_error};
+use crate::orthonormal::not_a_rotation;
+use crate::words::words;
 use crate::{Description, Malformed, Placement};
 use std::collections::HashSet;
 use thiserror::Error;
@@ -83,44 +84,48 @@ pub enum ContinuumSection {
     },
 }
 
-/// How a continuum is discretised.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ContinuumElement {
-    /// Rigid links of equal length; each has its springs at its start.
-    LinksStart,
-    /// The same, with springs of twice the stiffness at the root.
-    LinksStartStiffWall,
-    /// Rigid links of equal length; the springs are in the middle of the elements.
-    LinksMiddle,
-    /// The deflection is a sum of monomials s², s³, ….
-    Monomials,
-    /// The deflection is a sum of the exact modes of a clamped beam.
-    Modes,
-    /// The deflection is a cubic Hermite spline.
-    Hermite,
-    /// A Cosserat rod with strains that are constant in each element.
-    Sections,
-    /// A string of rigid links without springs.
-    StringLinks,
-    /// A string with a point mass at the end of each link.
-    StringPoints,
+words! {
+    /// How a continuum is discretised.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum ContinuumElement {
+        /// Rigid links of equal length; each has its springs at its start.
+        LinksStart => "links_start",
+        /// The same, with springs of twice the stiffness at the root.
+        LinksStartStiffWall => "links_start_stiff_wall",
+        /// Rigid links of equal length; the springs are in the middle of the elements.
+        LinksMiddle => "links_middle",
+        /// The deflection is a sum of monomials s², s³, ….
+        Monomials => "monomials",
+        /// The deflection is a sum of the exact modes of a clamped beam.
+        Modes => "modes",
+        /// The deflection is a cubic Hermite spline.
+        Hermite => "hermite",
+        /// A Cosserat rod with strains that are constant in each element.
+        Sections => "sections",
+        /// A string of rigid links without springs.
+        StringLinks => "string_links",
+        /// A string with a point mass at the end of each link.
+        StringPoints => "string_points",
+    }
 }
 
-/// A strain of a rod, in axes of its section.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ContinuumStrain {
-    /// Twist κ_x, about x.
-    Twist,
-    /// Curvature κ_y: bending about y.
-    BendY,
-    /// Curvature κ_z: bending about z.
-    BendZ,
-    /// Extension along x.
-    Extension,
-    /// Shear along y.
-    ShearY,
-    /// Shear along z.
-    ShearZ,
+words! {
+    /// A strain of a rod, in axes of its section: rotations, then translations, as in a 6-vector.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum ContinuumStrain {
+        /// Twist κ_x, about x.
+        Twist => "twist",
+        /// Curvature κ_y: bending about y.
+        BendY => "bend_y",
+        /// Curvature κ_z: bending about z.
+        BendZ => "bend_z",
+        /// Extension along x.
+        Extension => "extension",
+        /// Shear along y.
+        ShearY => "shear_y",
+        /// Shear along z.
+        ShearZ => "shear_z",
+    }
 }
 
 /// A rigid body that is fixed to the tip. Its axes are those of the tip's section.
@@ -226,34 +231,6 @@ pub enum ContinuumDefect {
 }
 
 impl ContinuumElement {
-    /// All elements.
-    pub const ALL: [Self; 9] = [
-        Self::LinksStart,
-        Self::LinksStartStiffWall,
-        Self::LinksMiddle,
-        Self::Monomials,
-        Self::Modes,
-        Self::Hermite,
-        Self::Sections,
-        Self::StringLinks,
-        Self::StringPoints,
-    ];
-
-    /// The word for it in a description file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::LinksStart => "links_start",
-            Self::LinksStartStiffWall => "links_start_stiff_wall",
-            Self::LinksMiddle => "links_middle",
-            Self::Monomials => "monomials",
-            Self::Modes => "modes",
-            Self::Hermite => "hermite",
-            Self::Sections => "sections",
-            Self::StringLinks => "string_links",
-            Self::StringPoints => "string_points",
-        }
-    }
-
     /// The strains that it can have. A string bends freely: its links turn about z, or about y and z.
     pub fn strains(self) -> &'static [ContinuumStrain] {
         use ContinuumStrain::{BendY, BendZ, Extension, Twist};
@@ -266,23 +243,6 @@ impl ContinuumElement {
 
     fn is_string(self) -> bool {
         matches!(self, Self::StringLinks | Self::StringPoints)
-    }
-}
-
-impl ContinuumStrain {
-    /// All strains: rotations, then translations, as in a 6-vector.
-    pub const ALL: [Self; 6] = [Self::Twist, Self::BendY, Self::BendZ, Self::Extension, Self::ShearY, Self::ShearZ];
-
-    /// The word for it in a description file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Twist => "twist",
-            Self::BendY => "bend_y",
-            Self::BendZ => "bend_z",
-            Self::Extension => "extension",
-            Self::ShearY => "shear_y",
-            Self::ShearZ => "shear_z",
-        }
     }
 }
 
@@ -344,8 +304,7 @@ impl Continuum {
         }
         finite("placement.rotation", &self.placement.rotation)?;
         finite("placement.translation", &self.placement.translation)?;
-        let error = rotation_error(&self.placement.rotation);
-        if error > ROTATION_TOLERANCE {
+        if let Some(error) = not_a_rotation(&self.placement.rotation) {
             return Err(ContinuumDefect::NotARotation { error });
         }
         positive("length", self.length)?;

@@ -25,6 +25,7 @@ mod tangent;
 mod topology;
 mod uncertain;
 mod validate;
+mod words;
 
 pub use configuration::{difference, integrate, interpolate, neutral};
 pub use continua::{Continuum, ContinuumDefect, ContinuumElement, ContinuumMaterial, ContinuumSection, ContinuumStrain, ContinuumTip};

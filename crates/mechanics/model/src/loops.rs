@@ -4,7 +4,8 @@
 //! Loops are data. A [`Model`](crate::Model) is the tree alone; `featherbench_constrained` makes constraints of them. Bodies are named by
 //! their index in the description, and coordinates by the body whose joint has them.
 
-use crate::validate::{ROTATION_TOLERANCE, rotation_error};
+use crate::orthonormal::not_a_rotation;
+use crate::words::words;
 use crate::{Description, Malformed, Placement};
 use std::collections::HashSet;
 use thiserror::Error;
@@ -69,28 +70,27 @@ pub struct LoopEnd {
     pub placement: Placement,
 }
 
-/// The motion that a joint of a loop leaves free. Its axis is z of both frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum LoopMotion {
-    /// None (a weld): rows of orientation x, y, z, then of position x, y, z.
-    #[default]
-    Fixed,
-    /// Rotation about z: rows that z be parallel (x, y), then of position x, y, z.
-    Revolute,
-    /// Translation along z: rows of orientation x, y, z, then of position x, y.
-    Prismatic,
-    /// Rotation about z and translation along it: rows that z be parallel (x, y), then of position x, y.
-    Cylindrical,
-    /// Rotation about the point: rows of position x, y, z.
-    Spherical,
-    /// Rotation about z and translation along x and y: rows that z be parallel (x, y), then of position z.
-    Planar,
+words! {
+    /// The motion that a joint of a loop leaves free. Its axis is z of both frames.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum LoopMotion {
+        /// None (a weld): rows of orientation x, y, z, then of position x, y, z.
+        #[default]
+        Fixed => "fixed",
+        /// Rotation about z: rows that z be parallel (x, y), then of position x, y, z.
+        Revolute => "revolute",
+        /// Translation along z: rows of orientation x, y, z, then of position x, y.
+        Prismatic => "prismatic",
+        /// Rotation about z and translation along it: rows that z be parallel (x, y), then of position x, y.
+        Cylindrical => "cylindrical",
+        /// Rotation about the point: rows of position x, y, z.
+        Spherical => "spherical",
+        /// Rotation about z and translation along x and y: rows that z be parallel (x, y), then of position z.
+        Planar => "planar",
+    }
 }
 
 impl LoopMotion {
-    /// All motions.
-    pub const ALL: [Self; 6] = [Self::Fixed, Self::Revolute, Self::Prismatic, Self::Cylindrical, Self::Spherical, Self::Planar];
-
     /// How many rotations are held: three, the two that tilt z, or none.
     pub fn held_rotations(self) -> usize {
         match self {
@@ -112,18 +112,6 @@ impl LoopMotion {
     /// Degrees of freedom of the joint.
     pub fn freedom(self) -> usize {
         6 - self.held_rotations() - self.held_axes().into_iter().filter(|held| *held).count()
-    }
-
-    /// The word for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Fixed => "fixed",
-            Self::Revolute => "revolute",
-            Self::Prismatic => "prismatic",
-            Self::Cylindrical => "cylindrical",
-            Self::Spherical => "spherical",
-            Self::Planar => "planar",
-        }
     }
 }
 
@@ -303,8 +291,7 @@ impl LoopEnd {
         }
         finite("placement.rotation", &self.placement.rotation)?;
         finite("placement.translation", &self.placement.translation)?;
-        let error = rotation_error(&self.placement.rotation);
-        if error <= ROTATION_TOLERANCE { Ok(()) } else { Err(LoopDefect::NotARotation { field, error }) }
+        not_a_rotation(&self.placement.rotation).map_or(Ok(()), |error| Err(LoopDefect::NotARotation { field, error }))
     }
 }
 

@@ -58,6 +58,17 @@ fn divided(axis: [f64; 3]) -> (f64, f64, [DoubleDouble; 3]) {
     (excess, (length - one).abs().to_f64(), exact)
 }
 
+/// By how much a matrix is no rotation (the largest entry of |RRᵀ − 1|, or |det R − 1|), if that is more than 1e-6.
+///
+/// A rotation with 17 digits is orthonormal to about 1e-15. One typed with 8 digits must be accepted, one with 5 digits must not.
+pub(crate) fn not_a_rotation(r: &[f64; 9]) -> Option<f64> {
+    let dot = |a: usize, b: usize| (0..3).map(|k| r[3 * a + k] * r[3 * b + k]).sum::<f64>();
+    let gram = (0..3).flat_map(|a| (0..3).map(move |b| (a, b))).map(|(a, b)| (dot(a, b) - f64::from(a == b)).abs());
+    let det = r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) + r[2] * (r[3] * r[7] - r[4] * r[6]);
+    let error = gram.fold((det - 1.0).abs(), |worst, x| if x > worst || x.is_nan() { x } else { worst });
+    if error <= 1e-6 { None } else { Some(error) }
+}
+
 /// The rotation nearest to a matrix. The matrix must be one that validation accepts.
 pub(crate) fn rotation(matrix: [f64; 9]) -> Normalised<9> {
     if matrix.as_chunks().0.iter().all(is_exact) && (0..3).all(|k| (0..3).any(|row| matrix[3 * row + k] != 0.0)) {

@@ -60,17 +60,11 @@ impl<T: Real> TangentMap<T> {
     }
 
     /// `result = map · x`.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when a vector does not fit.
     pub fn mul(&self, x: &[T], result: &mut [T]) -> Result<(), DimensionError> {
         self.product(x, result, |row, column, n| row * n + column)
     }
 
     /// `result = mapᵀ · x`: what a cost's gradient takes on its way back.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when a vector does not fit.
     pub fn transpose_mul(&self, x: &[T], result: &mut [T]) -> Result<(), DimensionError> {
         self.product(x, result, |row, column, n| column * n + row)
     }
@@ -117,42 +111,27 @@ impl<T: Real> TangentMap<T> {
 
 impl<T: Angle> TangentMap<T> {
     /// The derivative of `q ⊕ v` with respect to q. It transports tangent vectors from q to q ⊕ v.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when `v` does not fit.
     pub fn d_integrate_q(&mut self, v: &[T]) -> Result<(), DimensionError> {
         let turned = |omega| Quaternion::exp(omega).to_rotation().transpose();
         self.fill(v, T::one(), T::one(), turned, Motion::carried)
     }
 
     /// The derivative of `q ⊕ v` with respect to v.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when `v` does not fit.
     pub fn d_integrate_v(&mut self, v: &[T]) -> Result<(), DimensionError> {
         self.fill(v, T::one(), T::one(), Vec3::right_jacobian, Motion::right_jacobian)
     }
 
     /// The derivative of `v = q₁ ⊖ q₀` with respect to q₁, from v.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when `v` does not fit.
     pub fn d_difference_to(&mut self, v: &[T]) -> Result<(), DimensionError> {
         self.fill(v, T::one(), T::one(), Vec3::inverse_right_jacobian, Motion::inverse_right_jacobian)
     }
 
     /// The derivative of `v = q₁ ⊖ q₀` with respect to q₀, from v.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when `v` does not fit.
     pub fn d_difference_from(&mut self, v: &[T]) -> Result<(), DimensionError> {
         self.fill(v, -T::one(), -T::one(), Vec3::inverse_right_jacobian, Motion::inverse_right_jacobian)
     }
 
     /// The derivative of [`Topology::step_rate`] with respect to the step, for this step and velocity; by dual numbers, block by block.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when an argument does not fit.
     pub fn d_step_rate(&mut self, step: &[T], v: &[T]) -> Result<(), DimensionError> {
         DimensionError::expect("step", self.nv, step.len())?;
         DimensionError::expect("velocity v", self.nv, v.len())?;
@@ -201,9 +180,6 @@ impl<T: Angle> TangentMap<T> {
 impl Topology {
     /// The rate of a step ξ whose end q ⊕ ξ moves with velocity v: `ξ̇ = J(ξ)⁻¹ v`. Integrators solve this equation for ξ, which lives in a
     /// vector space.
-    ///
-    /// # Errors
-    /// [`DimensionError`] when an argument does not fit.
     pub fn step_rate<T: Angle>(&self, step: &[T], v: &[T], rate: &mut [T]) -> Result<(), DimensionError> {
         self.expect_v(step)?;
         self.expect_v(v)?;
@@ -235,9 +211,6 @@ impl JointKind {
 }
 
 /// The derivatives of `q ⊕ v` with respect to q and to v; it allocates.
-///
-/// # Errors
-/// [`DimensionError`] when `v` does not fit.
 pub fn d_integrate<T: Angle>(topology: &Topology, v: &[T]) -> Result<[TangentMap<T>; 2], DimensionError> {
     let (mut by_q, mut by_v) = (TangentMap::new(topology), TangentMap::new(topology));
     by_q.d_integrate_q(v)?;
@@ -246,9 +219,6 @@ pub fn d_integrate<T: Angle>(topology: &Topology, v: &[T]) -> Result<[TangentMap
 }
 
 /// The derivatives of `to ⊖ from` with respect to `from` and to `to`; it allocates.
-///
-/// # Errors
-/// [`DimensionError`] when an argument does not fit.
 pub fn d_difference<T: Angle>(topology: &Topology, from: &[T], to: &[T]) -> Result<[TangentMap<T>; 2], DimensionError> {
     let v = difference(topology, from, to)?;
     let (mut by_from, mut by_to) = (TangentMap::new(topology), TangentMap::new(topology));

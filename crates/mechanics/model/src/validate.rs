@@ -1,6 +1,6 @@
 //! The two levels of validation: malformed is an error, unphysical is a warning of the model.
 
-use crate::orthonormal::{rotation, unit};
+use crate::orthonormal::{not_a_rotation, rotation, unit};
 use crate::{BodyDescription, ContinuumDefect, Description, JointType, LoopDefect, ResidualDefect, UncertainDefect};
 use thiserror::Error;
 
@@ -245,9 +245,7 @@ pub enum Warning {
     },
 }
 
-/// A rotation with 17 digits is orthonormal to about 1e-15. One typed with 8 digits must be accepted, one with 5 digits must not.
-pub(crate) const ROTATION_TOLERANCE: f64 = 1e-6;
-/// The same for the length of an axis.
+/// An axis may miss length one by as much as a rotation misses orthonormality.
 const AXIS_TOLERANCE: f64 = 1e-6;
 
 impl Description {
@@ -276,8 +274,7 @@ impl Description {
             }
             finite(&frame.name, "frame placement", &frame.placement.rotation)?;
             finite(&frame.name, "frame placement", &frame.placement.translation)?;
-            let error = rotation_error(&frame.placement.rotation);
-            if error > ROTATION_TOLERANCE {
+            if let Some(error) = not_a_rotation(&frame.placement.rotation) {
                 return Err(Malformed::FrameNotARotation { frame: frame.name.clone(), error });
             }
         }
@@ -349,8 +346,7 @@ impl BodyDescription {
         if let JointType::Helical { pitch, .. } = self.joint.kind {
             finite(&self.name, "pitch", &[pitch])?;
         }
-        let error = rotation_error(&self.joint.placement.rotation);
-        if error > ROTATION_TOLERANCE {
+        if let Some(error) = not_a_rotation(&self.joint.placement.rotation) {
             return Err(Malformed::NotARotation { body: body(), joint: joint(), error });
         }
         self.validate_dofs()
@@ -406,13 +402,6 @@ fn finite(body: &str, field: &'static str, values: &[f64]) -> Result<(), Malform
         Some(&value) => Err(Malformed::NotFinite { body: body.to_owned(), field, value }),
         None => Ok(()),
     }
-}
-
-pub(crate) fn rotation_error(r: &[f64; 9]) -> f64 {
-    let dot = |a: usize, b: usize| (0..3).map(|k| r[3 * a + k] * r[3 * b + k]).sum::<f64>();
-    let gram = (0..3).flat_map(|a| (0..3).map(move |b| (a, b))).map(|(a, b)| (dot(a, b) - f64::from(a == b)).abs());
-    let det = r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) + r[2] * (r[3] * r[7] - r[4] * r[6]);
-    gram.fold((det - 1.0).abs(), |worst, x| if x > worst || x.is_nan() { x } else { worst })
 }
 
 /// Smallest eigenvalue of a symmetric 3×3 matrix by the trigonometric formula (O. K. Smith 1961). Its error is about 1e-8 of the scale, far

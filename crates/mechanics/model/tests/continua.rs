@@ -1,17 +1,10 @@
 //! Continua of descriptions: what fixed bodies do to them, who refuses them, and which material, section or element is none.
 
+use crate::loops::body;
 use featherbench_model::{
-    BodyDescription, Continuum, ContinuumDefect, ContinuumElement, ContinuumMaterial, ContinuumSection, ContinuumStrain, ContinuumTip,
-    Description, JointDescription, JointType, Malformed, Model, Placement,
+    Continuum, ContinuumDefect, ContinuumElement, ContinuumMaterial, ContinuumSection, ContinuumStrain, ContinuumTip, Description,
+    JointType, Malformed, Model, Placement,
 };
-
-fn body(name: &str, parent: Option<usize>, kind: JointType, translation: [f64; 3]) -> BodyDescription {
-    // A quarter turn about z: x of the child is y of the parent.
-    let rotation = [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
-    let joint =
-        JointDescription { name: format!("{name} joint"), kind, placement: Placement { rotation, translation }, ..Default::default() };
-    BodyDescription { name: name.into(), parent, mass: 1.0, com: [0.0; 3], inertia: [0.1, 0.0, 0.0, 0.1, 0.0, 0.1], joint }
-}
 
 fn finger() -> Continuum {
     Continuum {

@@ -7,7 +7,7 @@ use featherbench_model::{
 
 const Z: [f64; 3] = [0.0, 0.0, 1.0];
 
-fn body(name: &str, parent: Option<usize>, kind: JointType, translation: [f64; 3]) -> BodyDescription {
+pub fn body(name: &str, parent: Option<usize>, kind: JointType, translation: [f64; 3]) -> BodyDescription {
     // A quarter turn about z: x of the child is y of the parent.
     let rotation = [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     let joint =

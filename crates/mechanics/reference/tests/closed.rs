@@ -2,10 +2,10 @@
 
 use crate::support;
 
-use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Placement};
+use featherbench_model::JointType;
 use featherbench_reference::closed::{DoublePendulum, Elliptic, FreeTop, HeavyTop, Pendulum};
 use featherbench_reference::{Error, Mp, Precision, Robot};
-use support::{close, distance};
+use support::{body, close, distance, under_gravity};
 
 const P: Precision = Precision::STANDARD;
 
@@ -24,14 +24,9 @@ fn rate(f: impl Fn(&Mp) -> Vec<Mp>, t: &Mp) -> Vec<Mp> {
     after.iter().zip(&before).map(|(after, before)| (after - before) / step.twice()).collect()
 }
 
-fn body(name: &str, parent: Option<usize>, mass: f64, com: [f64; 3], inertia: [f64; 6], kind: JointType, at: [f64; 3]) -> BodyDescription {
-    let joint = JointDescription {
-        name: format!("{name} joint"),
-        kind,
-        placement: Placement { translation: at, ..Placement::default() },
-        ..JointDescription::default()
-    };
-    BodyDescription { name: name.into(), parent, mass, com, inertia, joint }
+/// The largest difference of two lists.
+fn gap(x: &[Mp], y: &[Mp]) -> Mp {
+    x.iter().zip(y).fold(Mp::zero(), |gap, (x, y)| gap.max((x - y).abs()))
 }
 
 /// Known values, the addition theorem and the derivative test sn, cn and dn; Legendre's relation would not.
@@ -63,10 +58,8 @@ fn elliptic_functions() {
 #[test]
 fn pendulum() {
     // Natural frequency √(m g l / J) = √(2·8·0.5/0.5) = 4 of a 2 kg point 0.5 m below its axis.
-    let mut description = Description { gravity: [0.0, 0.0, -8.0], ..Description::default() };
-    let turn = JointType::Revolute { axis: [0.0, 1.0, 0.0] };
-    description.bodies.push(body("bob", None, 2.0, [0.0, 0.0, -0.5], [0.0; 6], turn, [0.0; 3]));
-    let robot = Robot::new(&description, P).unwrap();
+    let bob = body(None, 2.0, [0.0, 0.0, -0.5], [0.0; 6], JointType::Revolute { axis: [0.0, 1.0, 0.0] }, [0.0; 3]);
+    let robot = Robot::new(&under_gravity(8.0, vec![bob]), P).unwrap();
     let natural = number(4.0);
     for bottom in [0.01, 3.0, 7.99, 8.01, 30.0] {
         let motion = Pendulum::passing(&natural, &number(bottom)).unwrap();
@@ -111,10 +104,9 @@ fn double_pendulum() {
         close(name, &distance(&acceleration, &expected.map(parse)), 2.5e-12);
     }
     let turn = JointType::Revolute { axis: [0.0, 1.0, 0.0] };
-    let mut description = Description { gravity: [0.0, 0.0, -9.8125], ..Description::default() };
-    description.bodies.push(body("one", None, 2.0, [0.0, 0.0, 0.375], [0.0, 0.0, 0.0, 0.125, 0.0, 0.0], turn, [0.0; 3]));
-    description.bodies.push(body("two", Some(0), 1.0, [0.0, 0.0, 0.25], [0.0, 0.0, 0.0, 0.0625, 0.0, 0.0], turn, [0.0, 0.0, 1.0]));
-    let robot = Robot::new(&description, P).unwrap();
+    let one = body(None, 2.0, [0.0, 0.0, 0.375], [0.0, 0.0, 0.0, 0.125, 0.0, 0.0], turn, [0.0; 3]);
+    let two = body(Some(0), 1.0, [0.0, 0.0, 0.25], [0.0, 0.0, 0.0, 0.0625, 0.0, 0.0], turn, [0.0, 0.0, 1.0]);
+    let robot = Robot::new(&under_gravity(9.8125, vec![one, two]), P).unwrap();
     let arm = DoublePendulum {
         mass: [2.0, 1.0].map(number),
         length: number(1.0),
@@ -129,10 +121,9 @@ fn double_pendulum() {
 #[test]
 fn free_top() {
     let moments = [0.75, 1.0, 1.5];
-    let mut description = Description::default();
     let inertia = [moments[0], 0.0, 0.0, moments[1], 0.0, moments[2]];
-    description.bodies.push(body("top", None, 3.0, [0.0; 3], inertia, JointType::Free, [0.0; 3]));
-    let robot = Robot::new(&description, P).unwrap();
+    let free = body(None, 3.0, [0.0; 3], inertia, JointType::Free, [0.0; 3]);
+    let robot = Robot::new(&under_gravity(0.0, vec![free]), P).unwrap();
     let attitude = [0.0, 0.0, 0.0, 0.5, -0.5, 0.1, 0.7].map(number);
     // Around the third axis, around the first, both ways; steadily about either.
     for (first, third) in [(0.5, 2.0), (2.0, 0.5), (-2.0, 0.5), (0.3, -1.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.4)] {
@@ -144,8 +135,7 @@ fn free_top() {
             v[3..].clone_from_slice(&omega);
             let euler = robot.at(&attitude, &v).unwrap().forward_dynamics(&vec![Mp::zero(); 6]).unwrap();
             let derivative = rate(|t| top.at(t).to_vec(), &t);
-            let gap = derivative.iter().zip(&euler[3..]).fold(Mp::zero(), |gap, (x, y)| gap.max((x - y).abs()));
-            close(&format!("Euler's equations from ({first}, 0, {third})"), &gap, 1e-50);
+            close(&format!("Euler's equations from ({first}, 0, {third})"), &gap(&derivative, &euler[3..]), 1e-50);
             let momentum: Vec<Mp> = omega.iter().zip(moments).map(|(omega, moment)| omega * number(moment)).collect();
             let energy: Mp = momentum.iter().zip(&omega).map(|(momentum, omega)| momentum * omega).sum();
             close("energy", &distance(&[energy.half()], &[top.energy()]), 1e-120);
@@ -163,9 +153,8 @@ fn free_top() {
 #[test]
 fn heavy_top() {
     // 2 kg half a metre above the fixed point; A = 0.25 + 2·0.25 = 0.75, C = 0.5, mgl = 8.
-    let mut description = Description { gravity: [0.0, 0.0, -8.0], ..Description::default() };
-    description.bodies.push(body("top", None, 2.0, [0.0, 0.0, 0.5], [0.25, 0.0, 0.0, 0.25, 0.0, 0.5], JointType::Spherical, [0.0; 3]));
-    let robot = Robot::new(&description, P).unwrap();
+    let heavy = body(None, 2.0, [0.0, 0.0, 0.5], [0.25, 0.0, 0.0, 0.25, 0.0, 0.5], JointType::Spherical, [0.0; 3]);
+    let robot = Robot::new(&under_gravity(8.0, vec![heavy]), P).unwrap();
     let top = HeavyTop { transverse: number(0.75), axial: number(0.5), weight: number(8.0) };
     for (tilt, along_axis) in [(0.4, 30.0), (1.2, -20.0), (2.5, 3.0)] {
         let (tilt, along_axis) = (number(tilt), number(along_axis));
@@ -183,8 +172,7 @@ fn heavy_top() {
                 let ((a, b), (c, d)) = (tilt.half().sin_cos(), spun.half().sin_cos());
                 let quaternion = [&a * &d, -(&a * &c), &b * &c, &b * &d];
                 let fall = robot.at(&quaternion, &omega).unwrap().forward_dynamics(&vec![Mp::zero(); 3]).unwrap();
-                let gap = fall.iter().zip(&acceleration).fold(Mp::zero(), |gap, (x, y)| gap.max((x - y).abs()));
-                close("forward dynamics", &gap, 1e-120);
+                close("forward dynamics", &gap(&fall, &acceleration), 1e-120);
                 let motion = robot.at(&quaternion, &omega).unwrap();
                 let kept = top.conserved(&tilt, &Mp::zero(), &steady.precession, &steady.spin);
                 close("energy", &distance(&[motion.kinetic_energy() + motion.potential_energy()], &[kept.energy]), 1e-120);

@@ -1,9 +1,10 @@
 //! The integrators of the kernels against closed forms: errors fall at the order, to the motion of the textbook.
 
+use crate::support::{body, under_gravity};
 use featherbench_dynamics::integrate::{
     DormandPrince, Dynamics, ImplicitMidpoint, Integrator, Passive, RungeKutta4, SymplecticEuler, Tolerance,
 };
-use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement};
+use featherbench_model::{BodyDescription, JointType, Model};
 use featherbench_reference::closed::{DoublePendulum, FreeTop, HeavyTop, Pendulum};
 use featherbench_reference::{Mp, Precision, nearest_doubles};
 use featherbench_spatial::{Motion, Quaternion, Vec3};
@@ -12,14 +13,8 @@ fn number(x: f64) -> Mp {
     Precision::bits(160).number(x).unwrap()
 }
 
-fn body(parent: Option<usize>, mass: f64, com: [f64; 3], inertia: [f64; 6], kind: JointType, at: [f64; 3]) -> BodyDescription {
-    let placement = Placement { translation: at, ..Placement::default() };
-    let joint = JointDescription { kind, placement, ..JointDescription::default() };
-    BodyDescription { name: format!("below {parent:?}"), parent, mass, com, inertia, joint }
-}
-
 fn build(gravity: f64, bodies: Vec<BodyDescription>) -> Model<f64> {
-    Model::build(&Description { gravity: [0.0, 0.0, -gravity], bodies, ..Description::default() }).unwrap()
+    Model::build(&under_gravity(gravity, bodies)).unwrap()
 }
 
 fn double(x: &Mp) -> f64 {

@@ -8,7 +8,7 @@ pub mod oracle;
 #[path = "../../../dynamics/tests/common/tolerance.rs"]
 mod tolerance;
 
-use featherbench_model::{Description, Model};
+use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement};
 use featherbench_reference::Mp;
 use featherbench_robots::{Family, Random, StateBatch};
 use std::path::{Path, PathBuf};
@@ -81,6 +81,18 @@ impl Case {
 
 pub fn describe(family: &str) -> Description {
     Family::parse(family).and_then(|family| family.generate()).unwrap_or_else(|error| panic!("{family}: {error}"))
+}
+
+/// A body below another, whose joint is at this place of it.
+pub fn body(parent: Option<usize>, mass: f64, com: [f64; 3], inertia: [f64; 6], kind: JointType, at: [f64; 3]) -> BodyDescription {
+    let placement = Placement { translation: at, ..Placement::default() };
+    let joint = JointDescription { kind, placement, ..JointDescription::default() };
+    BodyDescription { name: format!("below {parent:?}"), parent, mass, com, inertia, joint }
+}
+
+/// Bodies under gravity along −z.
+pub fn under_gravity(gravity: f64, bodies: Vec<BodyDescription>) -> Description {
+    Description { gravity: [0.0, 0.0, -gravity], bodies, ..Description::default() }
 }
 
 /// The project's root.

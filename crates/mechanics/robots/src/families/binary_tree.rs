@@ -5,16 +5,14 @@ use super::parameters::{parameters, require};
 use super::parts::{DYADIC_GRAVITY, LINK, X, Y, Z, dyadic_link};
 use featherbench_model::{Description, JointType};
 
-/// A balanced binary tree of `2^depth − 1` revolute links, axes x, y, z cycling with the level.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BinaryTree {
-    /// Levels.
-    pub depth: u32,
+parameters! {
+    /// A balanced binary tree of `2^depth − 1` revolute links, axes x, y, z cycling with the level.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct BinaryTree {
+        /// Levels.
+        pub depth: u32 = 6, "a number of levels", "{}";
+    }
 }
-
-parameters!(BinaryTree {
-    depth = 6, "a number of levels", "{}";
-});
 
 /// Half the distance of two siblings' joints, m.
 const ASIDE: f64 = 0.125;

@@ -5,22 +5,19 @@ use super::parameters::{MOST_LINKS, parameters, require};
 use super::parts::{DYADIC_GRAVITY, LINK, X, Y, Z, dyadic_link};
 use featherbench_model::{BodyDescription, Description, JointType};
 
-/// `segments` dyadic links in a row, the first on a free joint, and on each a left and a right leg of `leg` revolute joints:
-/// 6 + segments − 1 + 2·leg·segments dofs.
-///
-/// The axes of the spine are z, y, z, …; those of a leg z, x, x, ….
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Centipede {
-    /// Links of the spine, the free one included.
-    pub segments: usize,
-    /// Joints of each leg.
-    pub leg: usize,
+parameters! {
+    /// `segments` dyadic links in a row, the first on a free joint, and on each a left and a right leg of `leg` revolute joints:
+    /// 6 + segments − 1 + 2·leg·segments dofs.
+    ///
+    /// The axes of the spine are z, y, z, …; those of a leg z, x, x, ….
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Centipede {
+        /// Links of the spine, the free one included.
+        pub segments: usize = 10, "a number of links", "{}";
+        /// Joints of each leg.
+        pub leg: usize = 3, "a number of joints", "{}";
+    }
 }
-
-parameters!(Centipede {
-    segments = 10, "a number of links", "{}";
-    leg = 3, "a number of joints", "{}";
-});
 
 /// Where a leg stands on its segment, m from the middle plane.
 const ASIDE: f64 = 0.125;

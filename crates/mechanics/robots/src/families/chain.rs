@@ -5,40 +5,34 @@ use super::parts::{DYADIC_GRAVITY, LINK, X, Y, Z, dyadic_link};
 use super::{BadFamily, Base};
 use featherbench_model::{Description, JointType};
 
-/// The axes of a chain. (A *straight* chain is a state, q = 0, of either.)
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Layout {
-    /// All axes along y: the chain moves in the vertical xz-plane.
-    #[default]
-    Planar,
-    /// Axes x, y, z, x, …
-    Spatial,
+words! {
+    /// The axes of a chain. (A *straight* chain is a state, q = 0, of either.)
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum Layout {
+        /// All axes along y: the chain moves in the vertical xz-plane.
+        #[default]
+        Planar => "planar",
+        /// Axes x, y, z, x, …
+        Spatial => "spatial",
+    }
 }
 
-words!(Layout { Planar => "planar", Spatial => "spatial" });
-
-/// `n` revolute links in a row: 0.5 m along x, 1 kg, centre of mass halfway, inertia diag(2⁻⁷, 2⁻⁵, 2⁻⁵), gravity (0, 0, −9.8125).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Chain {
-    /// Revolute links; a free base is one link more.
-    pub n: usize,
-    /// The layout of the axes.
-    pub layout: Layout,
-    /// Factor on the last link's mass and inertia.
-    pub tip_scale: f64,
-    /// The first joint is at (offset, offset, 0), m.
-    pub base_offset: f64,
-    /// The base of the chain.
-    pub base: Base,
+parameters! {
+    /// `n` revolute links in a row: 0.5 m along x, 1 kg, centre of mass halfway, inertia diag(2⁻⁷, 2⁻⁵, 2⁻⁵), gravity (0, 0, −9.8125).
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Chain {
+        /// Revolute links; a free base is one link more.
+        pub n: usize = 10, "a number of links", "{}";
+        /// The layout of the axes.
+        pub layout: Layout = Layout::Planar, Layout::WORDS, "{}";
+        /// Factor on the last link's mass and inertia.
+        pub tip_scale: f64 = 1.0, "a positive number", "{:?}";
+        /// The first joint is at (offset, offset, 0), m.
+        pub base_offset: f64 = 0.0, "a distance in metres", "{:?}";
+        /// The base of the chain.
+        pub base: Base = Base::Fixed, Base::WORDS, "{}";
+    }
 }
-
-parameters!(Chain {
-    n = 10, "a number of links", "{}";
-    layout = Layout::Planar, Layout::WORDS, "{}";
-    tip_scale = 1.0, "a positive number", "{:?}";
-    base_offset = 0.0, "a distance in metres", "{:?}";
-    base = Base::Fixed, Base::WORDS, "{}";
-});
 
 impl Chain {
     pub(super) fn check(&self) -> Result<(), BadFamily> {

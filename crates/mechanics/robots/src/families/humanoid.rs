@@ -6,16 +6,14 @@ use super::parameters::{parameters, require};
 use super::parts::{GRAVITY, Part, X, Y, Z, free_box, limb};
 use featherbench_model::Description;
 
-/// The 36-dof humanoid; x forward, y left, z up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Humanoid {
-    /// Mass of each hand, kg; its size stays.
-    pub hand_mass: f64,
+parameters! {
+    /// The 36-dof humanoid; x forward, y left, z up.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Humanoid {
+        /// Mass of each hand, kg; its size stays.
+        pub hand_mass: f64 = 0.5, "a mass in kg", "{:?}";
+    }
 }
-
-parameters!(Humanoid {
-    hand_mass = 0.5, "a mass in kg", "{:?}";
-});
 
 impl Humanoid {
     pub(super) fn check(&self) -> Result<(), BadFamily> {

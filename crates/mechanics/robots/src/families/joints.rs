@@ -1,58 +1,44 @@
 //! Small branched trees that show one kind of joint in the middle and at the tips, on a fixed and on a free base.
 
+use super::Base;
 use super::parameters::{parameters, words};
 use super::parts::{ARMATURE, COMMON, MOVABLE, random_body, random_kind};
-use super::Base;
 use crate::Random;
 use featherbench_model::{BodyDescription, Description, JointType};
 
-/// The joint that a [`Joints`] robot shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Kind {
-    /// Rotation about an axis.
-    #[default]
-    Revolute,
-    /// Translation along an axis.
-    Prismatic,
-    /// Screw.
-    Helical,
-    /// Rotation about a point.
-    Spherical,
-    /// Motion in a plane.
-    Planar,
-    /// Rotation about x, then y.
-    Universal,
-    /// Motion along x, y and z.
-    Translation,
-    /// Rotation about an axis, and motion along it.
-    Cylindrical,
-    /// Rotation about z, then y, then x.
-    EulerZyx,
-    /// Free motion, in the middle of a tree as well.
-    Free,
-    /// The kinds from revolute to universal, each in the middle and at a tip.
-    Mixed,
-    /// The same without screws, which not every engine has.
-    Common,
-    /// Every single kind, each in the middle and at a tip.
-    All,
+words! {
+    /// The joint that a [`Joints`] robot shows.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum Kind {
+        /// Rotation about an axis.
+        #[default]
+        Revolute => "revolute",
+        /// Translation along an axis.
+        Prismatic => "prismatic",
+        /// Screw.
+        Helical => "helical",
+        /// Rotation about a point.
+        Spherical => "spherical",
+        /// Motion in a plane.
+        Planar => "planar",
+        /// Rotation about x, then y.
+        Universal => "universal",
+        /// Motion along x, y and z.
+        Translation => "translation",
+        /// Rotation about an axis, and motion along it.
+        Cylindrical => "cylindrical",
+        /// Rotation about z, then y, then x.
+        EulerZyx => "euler_zyx",
+        /// Free motion, in the middle of a tree as well.
+        Free => "free",
+        /// The kinds from revolute to universal, each in the middle and at a tip.
+        Mixed => "mixed",
+        /// The same without screws, which not every engine has.
+        Common => "common",
+        /// Every single kind, each in the middle and at a tip.
+        All => "all",
+    }
 }
-
-words!(Kind {
-    Revolute => "revolute",
-    Prismatic => "prismatic",
-    Helical => "helical",
-    Spherical => "spherical",
-    Planar => "planar",
-    Universal => "universal",
-    Translation => "translation",
-    Cylindrical => "cylindrical",
-    EulerZyx => "euler_zyx",
-    Free => "free",
-    Mixed => "mixed",
-    Common => "common",
-    All => "all",
-});
 
 impl Kind {
     /// The words of the joints that it shows.
@@ -71,38 +57,33 @@ impl Kind {
     }
 }
 
-/// The size of the tree around the joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Shape {
-    /// The joint in the middle and at the tips of a branched tree.
-    #[default]
-    Branched,
-    /// The joint alone, on the world or on a heavy free body. This is so well conditioned that errors are easy to see.
-    Single,
+words! {
+    /// The size of the tree around the joint.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum Shape {
+        /// The joint in the middle and at the tips of a branched tree.
+        #[default]
+        Branched => "branched",
+        /// The joint alone, on the world or on a heavy free body. This is so well conditioned that errors are easy to see.
+        Single => "single",
+    }
 }
 
-words!(Shape { Branched => "branched", Single => "single" });
-
-/// A root with two branches for each kind shown. In one branch the joint is on the root, a revolute forearm on it, and the joint again at
-/// the tip. In the other branch the joint is the tip. Axes and placements are skew, inertias full, masses within a factor of 1.5.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Joints {
-    /// The joint shown.
-    pub kind: Kind,
-    /// On a fixed base the root of a branched tree is a revolute body; a free base is the root itself.
-    pub base: Base,
-    /// The size of the tree.
-    pub shape: Shape,
-    /// Whether every joint but free ones has armature on each of its degrees of freedom.
-    pub armature: bool,
+parameters! {
+    /// A root with two branches for each kind shown. In one branch the joint is on the root, a revolute forearm on it, and the joint again at
+    /// the tip. In the other branch the joint is the tip. Axes and placements are skew, inertias full, masses within a factor of 1.5.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Joints {
+        /// The joint shown.
+        pub kind: Kind = Kind::Revolute, Kind::WORDS, "{}";
+        /// On a fixed base the root of a branched tree is a revolute body; a free base is the root itself.
+        pub base: Base = Base::Fixed, Base::WORDS, "{}";
+        /// The size of the tree.
+        pub shape: Shape = Shape::Branched, Shape::WORDS, "{}";
+        /// Whether every joint but free ones has armature on each of its degrees of freedom.
+        pub armature: bool = false, "true or false", "{}";
+    }
 }
-
-parameters!(Joints {
-    kind = Kind::Revolute, Kind::WORDS, "{}";
-    base = Base::Fixed, Base::WORDS, "{}";
-    shape = Shape::Branched, Shape::WORDS, "{}";
-    armature = false, "true or false", "{}";
-});
 
 /// Masses of the bodies, kg.
 const MASS: (f64, f64) = (0.8, 1.2);

@@ -44,43 +44,111 @@ use parameters::{Parameters, words};
 use std::fmt;
 use thiserror::Error;
 
-/// The base of the robot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Base {
-    /// The world.
-    #[default]
-    Fixed,
-    /// A free base body, six dofs and one body more than the fixed robot.
-    Free,
+words! {
+    /// The base of the robot.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum Base {
+        /// The world.
+        #[default]
+        Fixed => "fixed",
+        /// A free base body, six dofs and one body more than the fixed robot.
+        Free => "free",
+    }
 }
 
-words!(Base { Fixed => "fixed", Free => "free" });
+/// Declares [`Family`]: its variants, each of the type of that name, with the families' names.
+macro_rules! families {
+    ($($(#[$of:meta])* $family:ident => $name:literal),+ $(,)?) => {
+        /// A family of generated robots, with its parameters.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Family {
+            $($(#[$of])* $family($family)),+
+        }
 
-/// A family of generated robots, with its parameters.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Family {
+        impl Family {
+            /// The families' names.
+            pub const NAMES: [&'static str; [$($name),+].len()] = [$($name),+];
+
+            /// The family's name.
+            pub fn name(&self) -> &'static str {
+                match self {
+                    $(Self::$family(_) => $name),+
+                }
+            }
+
+            /// The name and the reader of the family of this name.
+            fn reader(name: &str) -> Option<(&'static str, Reader)> {
+                match name {
+                    $($name => Some(($name, |given| $family::read(given).map(Self::$family))),)+
+                    _ => None,
+                }
+            }
+
+            fn check(&self) -> Result<(), BadFamily> {
+                match self {
+                    $(Self::$family(family) => family.check()),+
+                }
+            }
+
+            fn describe(&self) -> Description {
+                match self {
+                    $(Self::$family(family) => family.describe()),+
+                }
+            }
+
+            fn written(&self) -> String {
+                match self {
+                    $(Self::$family(family) => family.written()),+
+                }
+            }
+        }
+    };
+}
+
+type Reader = fn(&mut Parameters) -> Result<Family, BadFamily>;
+
+/// What a family has that takes no parameters, or does with all that can be read. A family's own functions come before these.
+trait Plain: Default {
+    fn read(_: &mut Parameters) -> Result<Self, BadFamily> {
+        Ok(Self::default())
+    }
+
+    fn check(&self) -> Result<(), BadFamily> {
+        Ok(())
+    }
+
+    fn written(&self) -> String {
+        String::new()
+    }
+}
+
+impl Plain for Hand {}
+impl Plain for Joints {}
+impl Plain for Quadruped {}
+
+families! {
     /// Identical links in a row.
-    Chain(Chain),
+    Chain => "chain",
     /// A random tree with random bodies.
-    Tree(Tree),
+    Tree => "tree",
     /// A balanced binary tree.
-    BinaryTree(BinaryTree),
+    BinaryTree => "binary_tree",
     /// Links that are all joined to the world.
-    Star(Star),
+    Star => "star",
     /// A floating chain whose axes alternate.
-    Snake(Snake),
+    Snake => "snake",
     /// A floating spine with two legs on each link.
-    Centipede(Centipede),
+    Centipede => "centipede",
     /// Many arms that share one floating base.
-    Platform(Platform),
+    Platform => "platform",
     /// A 36-dof humanoid.
-    Humanoid(Humanoid),
+    Humanoid => "humanoid",
     /// An 18-dof quadruped.
-    Quadruped(Quadruped),
+    Quadruped => "quadruped",
     /// A 26-dof floating hand.
-    Hand(Hand),
+    Hand => "hand",
     /// A small branched tree that shows one kind of joint in its middle and at its tips.
-    Joints(Joints),
+    Joints => "joints",
 }
 
 /// Why a family cannot be generated.
@@ -133,49 +201,16 @@ pub enum BadFamily {
 }
 
 impl Family {
-    /// The families' names.
-    pub const NAMES: [&'static str; 11] =
-        ["chain", "tree", "binary_tree", "star", "snake", "centipede", "platform", "humanoid", "quadruped", "hand", "joints"];
-
-    /// The family's name.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Chain(_) => "chain",
-            Self::Tree(_) => "tree",
-            Self::BinaryTree(_) => "binary_tree",
-            Self::Star(_) => "star",
-            Self::Snake(_) => "snake",
-            Self::Centipede(_) => "centipede",
-            Self::Platform(_) => "platform",
-            Self::Humanoid(_) => "humanoid",
-            Self::Quadruped(_) => "quadruped",
-            Self::Hand(_) => "hand",
-            Self::Joints(_) => "joints",
-        }
-    }
-
     /// The family with this name and these parameters; the others have their defaults.
     ///
     /// # Errors
     /// [`BadFamily`], naming the family, the parameter and what it takes.
     pub fn from_parameters<'a>(name: &str, given: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<Self, BadFamily> {
-        let Some(family) = Self::NAMES.into_iter().find(|&known| known == name) else {
+        let Some((family, read)) = Self::reader(name) else {
             return Err(BadFamily::UnknownFamily { name: name.to_owned() });
         };
         let mut parameters = Parameters::new(family, given)?;
-        let result = match family {
-            "chain" => Self::Chain(Chain::read(&mut parameters)?),
-            "tree" => Self::Tree(Tree::read(&mut parameters)?),
-            "binary_tree" => Self::BinaryTree(BinaryTree::read(&mut parameters)?),
-            "star" => Self::Star(Star::read(&mut parameters)?),
-            "snake" => Self::Snake(Snake::read(&mut parameters)?),
-            "centipede" => Self::Centipede(Centipede::read(&mut parameters)?),
-            "platform" => Self::Platform(Platform::read(&mut parameters)?),
-            "humanoid" => Self::Humanoid(Humanoid::read(&mut parameters)?),
-            "quadruped" => Self::Quadruped(Quadruped),
-            "hand" => Self::Hand(Hand),
-            _ => Self::Joints(Joints::read(&mut parameters)?),
-        };
+        let result = read(&mut parameters)?;
         parameters.finish()?;
         result.check()?;
         Ok(result)
@@ -201,53 +236,15 @@ impl Family {
     /// [`BadFamily::BadValue`] when a parameter is out of its range.
     pub fn generate(&self) -> Result<Description, BadFamily> {
         self.check()?;
-        let mut robot = match self {
-            Self::Chain(chain) => chain.describe(),
-            Self::Tree(tree) => tree.describe(),
-            Self::BinaryTree(tree) => tree.describe(),
-            Self::Star(star) => star.describe(),
-            Self::Snake(snake) => snake.describe(),
-            Self::Centipede(centipede) => centipede.describe(),
-            Self::Platform(platform) => platform.describe(),
-            Self::Humanoid(humanoid) => humanoid.describe(),
-            Self::Quadruped(quadruped) => quadruped.describe(),
-            Self::Hand(hand) => hand.describe(),
-            Self::Joints(joints) => joints.describe(),
-        };
+        let mut robot = self.describe();
         robot.bodies.iter_mut().for_each(|body| body.joint.normalise());
         Ok(robot)
-    }
-
-    fn check(&self) -> Result<(), BadFamily> {
-        match self {
-            Self::Chain(chain) => chain.check(),
-            Self::Tree(tree) => tree.check(),
-            Self::BinaryTree(tree) => tree.check(),
-            Self::Star(star) => star.check(),
-            Self::Snake(snake) => snake.check(),
-            Self::Centipede(centipede) => centipede.check(),
-            Self::Platform(platform) => platform.check(),
-            Self::Humanoid(humanoid) => humanoid.check(),
-            Self::Quadruped(_) | Self::Hand(_) | Self::Joints(_) => Ok(()),
-        }
     }
 }
 
 /// The text that [`Family::parse`] reads back, every parameter written out.
 impl fmt::Display for Family {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.name())?;
-        match self {
-            Self::Chain(chain) => write!(f, ":{chain}"),
-            Self::Tree(tree) => write!(f, ":{tree}"),
-            Self::BinaryTree(tree) => write!(f, ":{tree}"),
-            Self::Star(star) => write!(f, ":{star}"),
-            Self::Snake(snake) => write!(f, ":{snake}"),
-            Self::Centipede(centipede) => write!(f, ":{centipede}"),
-            Self::Platform(platform) => write!(f, ":{platform}"),
-            Self::Humanoid(humanoid) => write!(f, ":{humanoid}"),
-            Self::Joints(joints) => write!(f, ":{joints}"),
-            Self::Quadruped(_) | Self::Hand(_) => Ok(()),
-        }
+        write!(f, "{}{}", self.name(), self.written())
     }
 }

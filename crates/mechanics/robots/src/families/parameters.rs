@@ -52,9 +52,14 @@ pub(super) fn require<T: ToString>(good: bool, family: &'static str, key: &'stat
     if good { Ok(()) } else { Err(BadFamily::BadValue { family, key, value: value.to_string(), expected: expected.to_owned() }) }
 }
 
-/// Gives an enumeration its words: `name`, `FromStr`, `Display`, and `WORDS` for messages.
+/// Declares an enumeration with its words: `name`, `FromStr`, `Display`, and `WORDS` for messages.
 macro_rules! words {
-    ($name:ident { $($variant:ident => $word:literal),+ $(,)? }) => {
+    ($(#[$of:meta])* pub enum $name:ident { $($(#[$variant_of:meta])* $variant:ident => $word:literal),+ $(,)? }) => {
+        $(#[$of])*
+        pub enum $name {
+            $($(#[$variant_of])* $variant),+
+        }
+
         impl $name {
             /// Every value.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
@@ -85,10 +90,17 @@ macro_rules! words {
 }
 pub(super) use words;
 
-/// The parameters of a family, each with its default, what it takes and how it is written: `Default`, `read`, and the `Display` that is
-/// read back.
+/// Declares a family by its parameters, each with its default, what it takes and how it is written: `Default`, `read`, and the `Display`
+/// that is read back.
 macro_rules! parameters {
-    ($family:ident { $($key:ident = $default:expr, $expected:expr, $format:literal;)+ }) => {
+    ($(#[$of:meta])* pub struct $family:ident {
+        $($(#[$key_of:meta])* pub $key:ident: $type:ty = $default:expr, $expected:expr, $format:literal;)+
+    }) => {
+        $(#[$of])*
+        pub struct $family {
+            $($(#[$key_of])* pub $key: $type),+
+        }
+
         impl Default for $family {
             fn default() -> Self {
                 Self { $($key: $default),+ }
@@ -99,6 +111,10 @@ macro_rules! parameters {
             pub(super) fn read(given: &mut super::Parameters) -> Result<Self, super::BadFamily> {
                 let default = Self::default();
                 Ok(Self { $($key: given.take(stringify!($key), default.$key, $expected)?),+ })
+            }
+
+            pub(super) fn written(&self) -> String {
+                format!(":{self}")
             }
         }
 

@@ -5,22 +5,19 @@ use super::parameters::{MOST_LINKS, parameters, require};
 use super::parts::{DYADIC_GRAVITY, LINK, X, Y, Z, dyadic_link};
 use featherbench_model::{BodyDescription, Description, JointType};
 
-/// A free platform that carries `robots` arms of `n` revolute dyadic links each: 6 + robots·n dofs.
-///
-/// The arms stand a metre apart, √robots of them in each row (rounded down). Their axes are z, y, x, z, …. The platform has twice
-/// the mass of the arms.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Platform {
-    /// Arms.
-    pub robots: usize,
-    /// Links of each arm.
-    pub n: usize,
+parameters! {
+    /// A free platform that carries `robots` arms of `n` revolute dyadic links each: 6 + robots·n dofs.
+    ///
+    /// The arms stand a metre apart, √robots of them in each row (rounded down). Their axes are z, y, x, z, …. The platform has twice
+    /// the mass of the arms.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Platform {
+        /// Arms.
+        pub robots: usize = 100, "a number of arms", "{}";
+        /// Links of each arm.
+        pub n: usize = 7, "a number of links", "{}";
+    }
 }
-
-parameters!(Platform {
-    robots = 100, "a number of arms", "{}";
-    n = 7, "a number of links", "{}";
-});
 
 impl Platform {
     pub(super) fn check(&self) -> Result<(), BadFamily> {

@@ -5,16 +5,14 @@ use super::parameters::{MOST_LINKS, parameters, require};
 use super::parts::{DYADIC_GRAVITY, LINK, Y, Z, dyadic_link};
 use featherbench_model::{Description, JointType};
 
-/// `n` dyadic links in a row, the first on a free joint: 6 + n − 1 dofs. The axes of the joints are z, y, z, …: yaw, pitch, yaw.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Snake {
-    /// Links, the free one included.
-    pub n: usize,
+parameters! {
+    /// `n` dyadic links in a row, the first on a free joint: 6 + n − 1 dofs. The axes of the joints are z, y, z, …: yaw, pitch, yaw.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Snake {
+        /// Links, the free one included.
+        pub n: usize = 20, "a number of links", "{}";
+    }
 }
-
-parameters!(Snake {
-    n = 20, "a number of links", "{}";
-});
 
 impl Snake {
     pub(super) fn check(&self) -> Result<(), BadFamily> {

@@ -5,16 +5,14 @@ use super::parameters::{MOST_LINKS, parameters, require};
 use super::parts::{DYADIC_GRAVITY, X, Y, Z, dyadic_link};
 use featherbench_model::{Description, JointType};
 
-/// `n` revolute dyadic links on the world, side by side along y, axes x, y, z cycling.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Star {
-    /// Links.
-    pub n: usize,
+parameters! {
+    /// `n` revolute dyadic links on the world, side by side along y, axes x, y, z cycling.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Star {
+        /// Links.
+        pub n: usize = 30, "a number of links", "{}";
+    }
 }
-
-parameters!(Star {
-    n = 30, "a number of links", "{}";
-});
 
 impl Star {
     pub(super) fn check(&self) -> Result<(), BadFamily> {

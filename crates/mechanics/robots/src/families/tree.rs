@@ -6,71 +6,53 @@ use super::{BadFamily, Base};
 use crate::Random;
 use featherbench_model::{Description, JointType};
 
-/// Which joints a random tree has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Mix {
-    /// Revolute joints alone.
-    #[default]
-    Revolute,
-    /// Revolute, prismatic, helical, spherical, planar and universal joints, equally likely.
-    All,
-    /// The same without screws, which not every engine has.
-    Common,
-    /// Prismatic joints alone.
-    Prismatic,
-    /// Screws alone.
-    Helical,
-    /// Spherical joints alone.
-    Spherical,
-    /// Planar joints alone.
-    Planar,
-    /// Universal joints alone.
-    Universal,
+words! {
+    /// Which joints a random tree has.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum Mix {
+        /// Revolute joints alone.
+        #[default]
+        Revolute => "revolute",
+        /// Revolute, prismatic, helical, spherical, planar and universal joints, equally likely.
+        All => "all",
+        /// The same without screws, which not every engine has.
+        Common => "common",
+        /// Prismatic joints alone.
+        Prismatic => "prismatic",
+        /// Screws alone.
+        Helical => "helical",
+        /// Spherical joints alone.
+        Spherical => "spherical",
+        /// Planar joints alone.
+        Planar => "planar",
+        /// Universal joints alone.
+        Universal => "universal",
+    }
 }
 
-words!(Mix {
-    Revolute => "revolute",
-    All => "all",
-    Common => "common",
-    Prismatic => "prismatic",
-    Helical => "helical",
-    Spherical => "spherical",
-    Planar => "planar",
-    Universal => "universal",
-});
-
-/// A random tree. Body k depends on the seed and k only, the tree's shape on the seed and `spread`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tree {
-    /// Jointed bodies; a free base is one body more.
-    pub n: usize,
-    /// The seed of every draw.
-    pub seed: u64,
-    /// The probability that a body starts a new branch, at an ancestor of the body before it chosen uniformly.
-    /// The mean depth is about 2/spread: 0 gives a chain, 1 a shallow tree.
-    pub spread: f64,
-    /// Which joints it has.
-    pub joints: Mix,
-    /// The base.
-    pub base: Base,
-    /// Whether one-dof joints have armature.
-    pub armature: bool,
-    /// Factor on the last body's mass and inertia.
-    pub tip_scale: f64,
-    /// The joints on the world are this far along x and y from where they were drawn, m.
-    pub base_offset: f64,
+parameters! {
+    /// A random tree. Body k depends on the seed and k only, the tree's shape on the seed and `spread`.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Tree {
+        /// Jointed bodies; a free base is one body more.
+        pub n: usize = 20, "a number of bodies", "{}";
+        /// The seed of every draw.
+        pub seed: u64 = 1, "a whole number", "{}";
+        /// The probability that a body starts a new branch, at an ancestor of the body before it chosen uniformly.
+        /// The mean depth is about 2/spread: 0 gives a chain, 1 a shallow tree.
+        pub spread: f64 = 0.3, "a probability", "{:?}";
+        /// Which joints it has.
+        pub joints: Mix = Mix::Revolute, Mix::WORDS, "{}";
+        /// The base.
+        pub base: Base = Base::Fixed, Base::WORDS, "{}";
+        /// Whether one-dof joints have armature.
+        pub armature: bool = false, "true or false", "{}";
+        /// Factor on the last body's mass and inertia.
+        pub tip_scale: f64 = 1.0, "a positive number", "{:?}";
+        /// The joints on the world are this far along x and y from where they were drawn, m.
+        pub base_offset: f64 = 0.0, "a distance in metres", "{:?}";
+    }
 }
-
-parameters!(Tree {
-    n = 20, "a number of bodies", "{}";
-    seed = 1, "a whole number", "{}";
-    spread = 0.3, "a probability", "{:?}";
-    joints = Mix::Revolute, Mix::WORDS, "{}";
-    base = Base::Fixed, Base::WORDS, "{}";
-    armature = false, "true or false", "{}";
-    tip_scale = 1.0, "a positive number", "{:?}";
-    base_offset = 0.0, "a distance in metres", "{:?}";
-});
 
 /// Masses of the bodies, kg.
 const MASS: (f64, f64) = (0.5, 2.0);
