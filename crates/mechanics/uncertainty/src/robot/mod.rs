@@ -19,9 +19,7 @@ mod numbers;
 mod samples;
 
 use crate::{Error, Linear, Space};
-use featherbench_dynamics::{
-    self as dynamics, ParameterSensitivity, TreeSparse, inertial_parameters, inverse_dynamics, mass_matrix, torque_regressor,
-};
+use featherbench_dynamics::{ParameterSensitivity, TreeSparse, inertial_parameters, inverse_dynamics, mass_matrix, torque_regressor};
 use featherbench_model::{Description, DimensionError, Model, TargetField};
 use featherbench_spatial::Vec3;
 use nalgebra::{DMatrix, DVector};
@@ -303,13 +301,9 @@ impl RobotResponse {
             Quantity::Acceleration => {
                 let force: Vec<f64> = drive.iter().zip(&losses).map(|(tau, loss)| tau - loss).collect();
                 let mut a = vec![0.0; nv];
-                ParameterSensitivity::new(&model).run(
-                    &model,
-                    dynamics::State { q, v, given: &force, wrenches: None },
-                    &mut a,
-                    &mut by_parameters,
-                )?;
-                let factors = mass_matrix(&model, q)?.into_ltdl().map_err(dynamics::Error::from)?;
+                let state = featherbench_dynamics::State { q, v, given: &force, wrenches: None };
+                ParameterSensitivity::new(&model).run(&model, state, &mut a, &mut by_parameters)?;
+                let factors = mass_matrix(&model, q)?.into_ltdl().map_err(featherbench_dynamics::Error::from)?;
                 (a.clone(), a, DMatrix::from_row_slice(nv, nv, &factors.dense_inverse()) * -1.0)
             }
             Quantity::Torque => {
