@@ -6,7 +6,7 @@ use crate::message::{self, say};
 use crate::oracles;
 use crate::robots::{self, Loaded};
 use crate::root::Root;
-use featherbench_bench::{Cell, Context, Engine, Factor, Planted, Robot, Suite};
+use featherbench_bench::{Cell, Context, Engine, Factor, OWN, Planted, Robot, Suite};
 use featherbench_engines::{Featherbench, Limits};
 use featherbench_registry::Setup;
 use featherbench_robots::Family;
@@ -100,7 +100,7 @@ fn json(root: &Root, args: &ListArgs) -> Result<Value, Fail> {
         })
     };
     let described = oracles::described(root)?;
-    let names = |names: Vec<&str>| std::iter::once("featherbench").chain(names).map(str::to_owned).collect::<Vec<_>>();
+    let names = |names: Vec<&str>| std::iter::once(OWN).chain(names).map(str::to_owned).collect::<Vec<_>>();
     let suites = suites(root)?.into_iter().map(|(name, about)| json!({ "name": name, "about": about }));
     Ok(json!({
         "suite": suite,

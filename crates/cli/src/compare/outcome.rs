@@ -1,13 +1,13 @@
 //! How a comparison ends for an engine and a robot: four questions, each with its row, and which of them make the exit code.
 
 use ::featherbench_results::{Culprit, Expectation, GateKind, Row, Verdict};
-use featherbench_bench::{Engine, Robot, measure::worst};
+use featherbench_bench::{Engine, OWN, Robot, measure::worst};
 use featherbench_comparison::import::bound;
 use serde_json::Value;
 
 /// The questions of all engines about a robot; `strict` counts what is only not read, and rounding, as well.
 pub fn conditions(robot: &Robot, engines: &[Box<dyn Engine>], records: &[Row], strict: bool) -> Vec<Expectation> {
-    let engines = engines.iter().map(|engine| engine.identity().name.as_str()).filter(|name| *name != "featherbench");
+    let engines = engines.iter().map(|engine| engine.identity().name.as_str()).filter(|name| *name != OWN);
     engines.flat_map(|engine| of_engine(robot, engine, records, strict)).collect()
 }
 

@@ -2,7 +2,7 @@
 
 use crate::compare::outcome::{neutral, params};
 use ::featherbench_results::{Row, Verdict};
-use featherbench_bench::{Engine, Robot};
+use featherbench_bench::{Engine, OWN, Robot};
 use featherbench_comparison::import::{Answer, LARGEST, repairs};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -34,15 +34,14 @@ pub fn answers(answers: &[Answer]) -> String {
 /// What each engine makes of a robot, as text.
 pub fn of(robot: &Robot, remarks: &[String], engines: &[Box<dyn Engine>], records: &[Row]) -> String {
     let states = &robot.states;
-    let reference =
-        records.iter().find(|row| row.study == "import" && row.robot == robot.name).map_or("featherbench", |row| &row.reference);
-    let reference = if reference == "featherbench" { "featherbench's own reading" } else { "the reading of MuJoCo's compiler" };
+    let reference = records.iter().find(|row| row.study == "import" && row.robot == robot.name).map_or(OWN, |row| &row.reference);
+    let reference = if reference == OWN { "featherbench's own reading" } else { "the reading of MuJoCo's compiler" };
     let mut text = format!("\n{} ({}, {} bodies, {} dofs), against {reference}\n", robot.name, robot.base(), states.bodies, states.nv);
     text += &unread(robot, engines, records);
     for remark in remarks {
         text += &format!("  not compared: {remark}\n");
     }
-    for engine in engines.iter().filter(|engine| engine.identity().name != "featherbench") {
+    for engine in engines.iter().filter(|engine| engine.identity().name != OWN) {
         let identity = engine.identity();
         let rows: Vec<&Row> = records.iter().filter(|row| row.robot == robot.name && row.engine == identity.name).collect();
         text += &format!("\n  {} {}\n", identity.name, identity.version);

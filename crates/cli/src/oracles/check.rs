@@ -7,7 +7,7 @@ use crate::oracles::external;
 use crate::oracles::package;
 use crate::root::Root;
 use featherbench_engines::Limits;
-use featherbench_engines::conformance::{Conformance, Finding, Standing, check_program};
+use featherbench_engines::conformance::{Conformance, Remark, Standing, check_program};
 use std::io::IsTerminal;
 use std::time::Duration;
 
@@ -45,7 +45,7 @@ fn text(conformance: &Conformance, all: bool) -> String {
     }
     let sections = [("right", Standing::Right), ("lacks", Standing::Lacks), ("wrong", Standing::Wrong)];
     for (title, standing) in sections {
-        let findings: Vec<&Finding> = conformance.of(standing).collect();
+        let findings: Vec<&Remark> = conformance.of(standing).collect();
         let shown = all || standing != Standing::Right;
         text += &format!("\n{title}   {}\n", findings.len());
         // What is right says little, but for the errors of values.

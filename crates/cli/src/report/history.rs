@@ -74,7 +74,8 @@ fn machine(host: &Host) -> String {
 
 /// One line per kernel over the stream, and how many times do not count.
 fn lines(run: &RunInfo, records: &[Row], model: &str, counts: &InstructionCounts) -> (Vec<String>, usize) {
-    let featherbench = |row: &&Row| row.study == "timing" && row.engine == "featherbench" && row.cache == "stream" && row.robot == model;
+    let featherbench =
+        |row: &&Row| row.study == "timing" && row.engine == featherbench_bench::OWN && row.cache == "stream" && row.robot == model;
     let rows: Vec<&Row> = records.iter().filter(featherbench).collect();
     let (mut lines, mut invalid) = (Vec::new(), 0);
     for row in rows.iter().filter(|row| row.metric == "ns_per_call") {

@@ -35,7 +35,7 @@ pub struct Estimate {
 
 /// The result of comparing an engine with the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Finding {
+pub enum Pace {
     /// It takes longer, by more than the noise.
     Slower,
     /// It takes less time, by more than the noise.
@@ -77,14 +77,14 @@ impl Estimate {
         Self::median(&ratios, level, random)
     }
 
-    /// The finding: a difference exists if the interval is beyond 1 ± noise, not just beyond one.
-    pub fn finding(&self) -> Finding {
+    /// The pace: a difference exists if the interval is beyond 1 ± noise, not just beyond one.
+    pub fn pace(&self) -> Pace {
         if self.low > 1.0 + NOISE {
-            Finding::Slower
+            Pace::Slower
         } else if self.high < 1.0 / (1.0 + NOISE) {
-            Finding::Faster
+            Pace::Faster
         } else {
-            Finding::Alike
+            Pace::Alike
         }
     }
 
@@ -145,4 +145,11 @@ pub fn quantile(sorted: &[f64], fraction: f64) -> f64 {
         (Some(a), Some(b)) => a + (b - a) * at.fract(),
         _ => f64::NAN,
     }
+}
+
+/// The same of samples in any order. A NaN is at an end, by its sign.
+pub fn quantile_of(samples: &[f64], fraction: f64) -> f64 {
+    let mut sorted = samples.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    quantile(&sorted, fraction)
 }

@@ -1,7 +1,7 @@
 //! Conclusions from the blocks of a paired experiment, on machines with known noise.
 
 use featherbench_bench::measure::worst;
-use featherbench_bench::statistics::{CONTROL_LEVEL, EPOCHS, Estimate, Finding, LEVEL, draw, median, quantile, weighted_median};
+use featherbench_bench::statistics::{CONTROL_LEVEL, EPOCHS, Estimate, LEVEL, Pace, draw, median, quantile, weighted_median};
 use featherbench_robots::Random;
 use featherbench_spatial::Real;
 
@@ -91,11 +91,11 @@ fn the_median_of_weights_is_the_median_of_the_samples_that_they_stand_for() {
 #[test]
 fn five_percent_are_convicted_and_half_a_percent_is_not() {
     for (name, noise) in MACHINES {
-        let found = |slower: f64, finding| count(|seed| ratio(noise, slower, seed, LEVEL).finding() == finding);
-        assert_eq!(found(1.05, Finding::Slower), TRIALS, "{name}");
-        assert_eq!(found(1.005, Finding::Alike), TRIALS, "{name}");
-        assert_eq!(found(1.0, Finding::Alike), TRIALS, "{name}");
-        assert_eq!(found(1.0 / 1.05, Finding::Faster), TRIALS, "{name}");
+        let found = |slower: f64, finding| count(|seed| ratio(noise, slower, seed, LEVEL).pace() == finding);
+        assert_eq!(found(1.05, Pace::Slower), TRIALS, "{name}");
+        assert_eq!(found(1.005, Pace::Alike), TRIALS, "{name}");
+        assert_eq!(found(1.0, Pace::Alike), TRIALS, "{name}");
+        assert_eq!(found(1.0 / 1.05, Pace::Faster), TRIALS, "{name}");
     }
 }
 
@@ -152,7 +152,7 @@ fn medians_and_intervals_of_few_samples() {
     let few = of(&[1.0, 2.0, 3.0, 4.0, 5.0]);
     assert!(few.value == 3.0 && few.low <= 2.0 && few.high >= 4.0, "{few:?}");
     assert_eq!(of(&[1.0, 2.0, 3.0]), of(&[1.0, 2.0, 3.0]), "the same seed, the same interval");
-    assert_eq!(Estimate { value: f64::NAN, low: f64::NAN, high: f64::NAN }.finding(), Finding::Alike);
+    assert_eq!(Estimate { value: f64::NAN, low: f64::NAN, high: f64::NAN }.pace(), Pace::Alike);
     assert!(Estimate { value: f64::NAN, low: f64::NAN, high: f64::NAN }.complaint().is_some());
 }
 
@@ -244,12 +244,12 @@ fn every_place_is_drawn_alike() {
 fn the_noise_ends_at_two_percent() {
     let ends = |low: f64, high: f64| Estimate { value: 0.5 * (low + high), low, high };
     let (above, below) = (1.02_f64, 1.0 / 1.02);
-    assert_eq!(ends(above, 1.1).finding(), Finding::Alike);
-    assert_eq!(ends(above.next_up(), 1.1).finding(), Finding::Slower);
-    assert_eq!(ends(0.9, below).finding(), Finding::Alike);
-    assert_eq!(ends(0.9, below.next_down()).finding(), Finding::Faster);
-    assert_eq!(ends(0.5, 2.0).finding(), Finding::Alike, "it cannot tell");
-    assert_eq!(ends(1.0, 1.0).finding(), Finding::Alike);
+    assert_eq!(ends(above, 1.1).pace(), Pace::Alike);
+    assert_eq!(ends(above.next_up(), 1.1).pace(), Pace::Slower);
+    assert_eq!(ends(0.9, below).pace(), Pace::Alike);
+    assert_eq!(ends(0.9, below.next_down()).pace(), Pace::Faster);
+    assert_eq!(ends(0.5, 2.0).pace(), Pace::Alike, "it cannot tell");
+    assert_eq!(ends(1.0, 1.0).pace(), Pace::Alike);
     assert_eq!(ends(0.98, 1.02).complaint(), None);
     assert!(ends(0.98_f64.next_down(), 1.0).complaint().is_some());
     assert!(ends(1.0, 1.02_f64.next_up()).complaint().is_some());

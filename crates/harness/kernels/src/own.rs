@@ -2,7 +2,7 @@
 
 use crate::kernel::{Failure, Kernel, kernel, not_offered};
 use crate::method::{Method, methods};
-use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Quantity, Robot};
+use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, OWN, Quantity, Robot};
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ pub struct Featherbench {
 impl Featherbench {
     /// The kernels of this build.
     pub fn new() -> Self {
-        let name = "featherbench".to_owned();
+        let name = OWN.to_owned();
         Self {
             identity: Identity { name, version: env!("CARGO_PKG_VERSION").to_owned(), source: EngineSource::Own, build: BTreeMap::new() },
         }

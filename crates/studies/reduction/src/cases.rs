@@ -1,6 +1,6 @@
 //! The cases of a catalogue: for each entry the smallest robot that still shows it, with its files.
 
-use crate::{Case, Entry, FEW, Fault, Finding, KEEP, Kind, Line, Reduced, Reduction, Status, files, reduce};
+use crate::{Entry, FEW, Failure, Fault, KEEP, Kind, Line, Reduced, Reduction, Status, Subject, files, reduce};
 use featherbench_bench::{Engine, Gates, HarnessError, Robot};
 use featherbench_results::Row;
 use std::collections::{BTreeMap, BTreeSet};
@@ -27,7 +27,7 @@ pub struct Reducing<'a, E> {
 /// A reduced case with the row that it comes from.
 struct Found<'a> {
     row: &'a Row,
-    finding: &'a Finding,
+    finding: &'a Failure,
     bodies: usize,
     kind: Kind,
     reduced: Reduced,
@@ -127,10 +127,10 @@ impl<'a, E: Display> Reducing<'a, E> {
 }
 
 /// The reduced case of a finding on a robot, from the state that shows it most; `None` if no state alone shows it.
-fn of_robot(engine: &dyn Engine, gates: &Gates, robot: &Robot, finding: &Finding) -> Option<(Reduced, Kind)> {
+fn of_robot(engine: &dyn Engine, gates: &Gates, robot: &Robot, finding: &Failure) -> Option<(Reduced, Kind)> {
     let shown = |robot: &Robot| finding.shown(engine, gates, robot);
     let of_its = |k: &usize| finding.states.is_none_or(|states| robot.states.cases.get(*k) == Some(&states));
-    let states = (0..robot.states.count()).filter(of_its).filter_map(|k| Some((k, shown(&Case::of(robot, k).robot()?)?)));
+    let states = (0..robot.states.count()).filter(of_its).filter_map(|k| Some((k, shown(&Subject::of(robot, k).robot()?)?)));
     let (k, given) = states.max_by(|(_, a), (_, b)| a.severity.total_cmp(&b.severity))?;
     // The size of a known deviation is known. Of other errors one that is larger by a decade is another: at the end all coordinates would be zero,
     // and what is left of an answer would be divided by what is left of a bound.
@@ -139,7 +139,7 @@ fn of_robot(engine: &dyn Engine, gates: &Gates, robot: &Robot, finding: &Finding
         let found = shown(robot).filter(|found| found.kind == given.kind && found.severity <= most)?;
         Some(found.severity)
     };
-    Some((reduce(Case::of(robot, k), 0.0, &same)?, given.kind))
+    Some((reduce(Subject::of(robot, k), 0.0, &same)?, given.kind))
 }
 
 /// Puts a folder in the place of another.

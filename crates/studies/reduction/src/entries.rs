@@ -1,7 +1,7 @@
 //! The entries of a catalogue: each known deviation of each engine, with the rows that show it, or why none can be reduced.
 
 use super::catalogue::{Line, Status};
-use super::finding::{Fault, Finding, OF_SEVERAL, metric};
+use super::finding::{Failure, Fault, OF_SEVERAL, metric};
 use featherbench_bench::{Deviation, Gates, Quantity, Reproduction, cause};
 use featherbench_results::{Row, Verdict};
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,7 +28,7 @@ const CALLED: [Quantity; 9] = [
 const NOT_REPRODUCED: &str = "not reproduced";
 
 /// Rows, each with what it says.
-type Found<'a> = Vec<(&'a Row, Finding)>;
+type Found<'a> = Vec<(&'a Row, Failure)>;
 /// An engine, a quantity and a method.
 type Way<'a> = (&'a str, &'a str, &'a str);
 
@@ -38,7 +38,7 @@ pub struct Entry<'a> {
     /// The line; its status holds unless a row is reduced.
     pub line: Line,
     /// The rows, each with what it says.
-    pub found: Vec<(&'a Row, Finding)>,
+    pub found: Vec<(&'a Row, Failure)>,
 }
 
 /// The entries of the rows of one run or several, in this order:
@@ -57,7 +57,7 @@ pub fn entries<'a>(gates: &Gates, rows: &'a [Row], named: &[String]) -> Vec<Entr
     all.extend(alone.map(of_reproduction));
     // One engine's lines follow each other, in the order of its file.
     all.sort_by(|a, b| a.line.engine.cmp(&b.line.engine));
-    let failing = by_method(&rows, |row| Finding::of(row).filter(|finding| finding.fault == Fault::Unknown));
+    let failing = by_method(&rows, |row| Failure::of(row).filter(|finding| finding.fault == Fault::Unknown));
     let taken: BTreeSet<(String, String)> = failing.iter().map(|entry| (entry.line.engine.clone(), entry.line.class.clone())).collect();
     all.extend(failing);
     let above = by_method(&rows, |row| above_rounding(row, named.is_empty()));
@@ -69,7 +69,7 @@ pub fn entries<'a>(gates: &Gates, rows: &'a [Row], named: &[String]) -> Vec<Entr
 fn of_deviation<'a>(known: &Deviation, rows: &[&'a Row]) -> Entry<'a> {
     let of_engine = || rows.iter().copied().filter(|row| row.engine == known.engine);
     let its: Vec<&Row> = of_engine().filter(|row| cause(row).is_some_and(|id| id == known.id)).collect();
-    let mut found: Found = its.iter().filter_map(|row| Some((*row, Finding::of(row)?))).collect();
+    let mut found: Found = its.iter().filter_map(|row| Some((*row, Failure::of(row)?))).collect();
     sort(&mut found);
     let of_files = known.quantities.as_ref().is_some_and(|quantities| quantities.iter().all(|quantity| quantity == "import"));
     let why = if of_files {
@@ -111,7 +111,7 @@ fn of_reproduction<'a>(known: &Reproduction) -> Entry<'a> {
 }
 
 /// An entry for each engine, quantity and method with such a finding.
-fn by_method<'a>(rows: &[&'a Row], finding: impl Fn(&Row) -> Option<Finding>) -> Vec<Entry<'a>> {
+fn by_method<'a>(rows: &[&'a Row], finding: impl Fn(&Row) -> Option<Failure>) -> Vec<Entry<'a>> {
     let mut groups: BTreeMap<Way, Found> = BTreeMap::new();
     for &row in rows {
         let Some(finding) = finding(row) else { continue };
@@ -137,20 +137,20 @@ fn by_method<'a>(rows: &[&'a Row], finding: impl Fn(&Row) -> Option<Finding>) ->
 }
 
 /// A row of the studies `accuracy` and `sweep` with a number, and one above rounding if `only` these are wanted.
-fn above_rounding(row: &Row, only: bool) -> Option<Finding> {
+fn above_rounding(row: &Row, only: bool) -> Option<Failure> {
     let least = if row.quantity == Quantity::ForwardDynamics.name() { OVER_FLOOR } else { ROUNDING };
     let severe = row.value.is_some_and(|value| value > least || !only) && row.precision == "f64";
     let judged =
         matches!(row.study.as_str(), "accuracy" | "sweep") && matches!(row.verdict, Verdict::Pass | Verdict::Info | Verdict::Deviation);
-    let finding = Finding::with(row, Fault::Above(least)).filter(|_| severe && judged)?;
+    let finding = Failure::with(row, Fault::Above(least)).filter(|_| severe && judged)?;
     (finding.metric == metric(finding.quantity)).then_some(finding)
 }
 
 /// The worst first: of small robots, the row with the largest error for its bound; of those without a number, that of the smallest robot.
-fn sort(found: &mut [(&Row, Finding)]) {
+fn sort(found: &mut [(&Row, Failure)]) {
     let big = |row: &Row| row.bodies.is_none_or(|bodies| bodies > SMALL);
     let share = |row: &Row| row.value.map_or(0.0, |value| value / row.bound.filter(|bound| *bound > 0.0).unwrap_or(1.0));
-    let is_called = |finding: &Finding| CALLED.contains(&finding.quantity);
+    let is_called = |finding: &Failure| CALLED.contains(&finding.quantity);
     found.sort_by(|(a, of_a), (b, of_b)| {
         let by_share = share(b).total_cmp(&share(a));
         big(a)

@@ -1,7 +1,7 @@
 //! The files of a reduced case: the robot in every format that holds it, its state with the true answer, a program, and what it is.
 
 use crate::programs;
-use crate::{Finding, Kind, Line, Reduced, true_answer};
+use crate::{Failure, Kind, Line, Reduced, true_answer};
 use featherbench_bench::HarnessError;
 use featherbench_formats::{OnLoss, mjcf, neutral, urdf};
 use featherbench_results::{Row, atomic_write};
@@ -9,7 +9,7 @@ use serde_json::json;
 use std::path::Path;
 
 /// Writes a case into its folder, and returns the names of its files.
-pub fn write(folder: &Path, line: &Line, row: &Row, finding: &Finding, reduced: &Reduced, kind: Kind) -> Result<Vec<String>, HarnessError> {
+pub fn write(folder: &Path, line: &Line, row: &Row, finding: &Failure, reduced: &Reduced, kind: Kind) -> Result<Vec<String>, HarnessError> {
     let mut case = reduced.case.clone();
     case.description.name = line.name.clone();
     let robot = case.robot().ok_or_else(|| bad(folder, "the reduced robot is none"))?;

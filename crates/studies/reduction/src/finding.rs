@@ -28,7 +28,7 @@ pub enum Fault {
 
 /// What a row says of a robot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
+pub struct Failure {
     /// The study, by name.
     pub study: String,
     /// The quantity.
@@ -77,16 +77,16 @@ pub struct Shown {
     pub kind: Kind,
 }
 
-impl Finding {
+impl Failure {
     /// What a row with a fault says; `None` if it has no fault, or if its study asks for more than a robot at a state.
     ///
     /// ```
     /// use featherbench_results::{Row, Verdict};
-    /// use featherbench_reduction::{Fault, Finding};
+    /// use featherbench_reduction::{Fault, Failure};
     ///
     /// let row = Row { study: "agreement".into(), quantity: "fd".into(), verdict: Verdict::Fail, ..Row::default() };
-    /// assert_eq!(Finding::of(&row).unwrap().fault, Fault::Unknown);
-    /// assert_eq!(Finding::of(&Row { verdict: Verdict::Pass, ..row }), None);
+    /// assert_eq!(Failure::of(&row).unwrap().fault, Fault::Unknown);
+    /// assert_eq!(Failure::of(&Row { verdict: Verdict::Pass, ..row }), None);
     /// ```
     pub fn of(row: &Row) -> Option<Self> {
         let fault = match row.verdict {

@@ -16,7 +16,7 @@ pub use cases::{Open, Reducing};
 pub use catalogue::{CATALOGUE, CATALOGUE_NAME, Catalogue, Line, Reduction, Status, told};
 pub use entries::{Entry, entries};
 pub use files::save;
-pub use finding::{Fault, Finding, Kind, Shown, metric, severity, true_answer};
+pub use finding::{Failure, Fault, Kind, Shown, metric, severity, true_answer};
 pub use section::section;
 
 use featherbench_bench::Robot;
@@ -48,7 +48,7 @@ pub struct JointState {
 
 /// A robot at a state.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Case {
+pub struct Subject {
     /// The name of the robot that it was reduced from.
     pub name: String,
     /// The kind of its state.
@@ -59,7 +59,7 @@ pub struct Case {
     pub state: BTreeMap<String, JointState>,
 }
 
-impl Case {
+impl Subject {
     /// A robot at one of its states. Wrenches on bodies are left out, and what the dynamics of the tree do not know of: loops, residuals.
     pub fn of(robot: &Robot, k: usize) -> Self {
         let (mut q, mut v) = (0, 0);
@@ -124,7 +124,7 @@ fn neutral(kind: JointType) -> Vec<f64> {
 #[derive(Clone, Debug)]
 pub struct Reduced {
     /// The case.
-    pub case: Case,
+    pub case: Subject,
     /// The severity of the case as given.
     pub before: f64,
     /// The severity of the reduced case.
@@ -134,10 +134,10 @@ pub struct Reduced {
 }
 
 /// What makes a case simpler.
-type Step = Box<dyn Fn(&mut Case)>;
+type Step = Box<dyn Fn(&mut Subject)>;
 
 /// Reduces a case whose error stays above `least`, too; `None` if it has no severity as given, or one that is not above.
-pub fn reduce(case: Case, least: f64, severity: &dyn Fn(&Robot) -> Option<f64>) -> Option<Reduced> {
+pub fn reduce(case: Subject, least: f64, severity: &dyn Fn(&Robot) -> Option<f64>) -> Option<Reduced> {
     let before = severity(&case.robot()?)?;
     if before.is_nan() || before <= least {
         return None;
@@ -167,7 +167,7 @@ struct Reducer<'a> {
 
 impl Reducer<'_> {
     /// Tries each step of a list. The list is made anew when one is kept: there may be fewer bodies.
-    fn pass(&mut self, steps: fn(&Case) -> Vec<Step>) {
+    fn pass(&mut self, steps: fn(&Subject) -> Vec<Step>) {
         let mut at = 0;
         loop {
             let list = steps(&self.reduced.case);

@@ -1,6 +1,6 @@
 //! The steps that make a case simpler, the largest first.
 
-use super::{Case, JointState, Step, neutral, subtree};
+use super::{JointState, Step, Subject, neutral, subtree};
 use featherbench_model::{BodyDescription, JointDescription, JointType, Placement};
 use featherbench_robots::{Case as StateCase, Random};
 use std::f64::consts::PI;
@@ -15,12 +15,12 @@ const AXES: [[f64; 3]; 3] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
 const DIAGONAL: [usize; 3] = [0, 3, 5];
 
 /// A subtree less.
-pub fn fewer_bodies(case: &Case) -> Vec<Step> {
+pub fn fewer_bodies(case: &Subject) -> Vec<Step> {
     let of = |root: usize| -> Step { Box::new(move |case| cut(case, root)) };
     (0..case.description.bodies.len()).map(of).collect()
 }
 
-fn cut(case: &mut Case, root: usize) {
+fn cut(case: &mut Subject, root: usize) {
     let gone = subtree(&case.description.bodies, root);
     let count = gone.len();
     case.description.bodies.drain(gone.clone());
@@ -30,12 +30,12 @@ fn cut(case: &mut Case, root: usize) {
 }
 
 /// A subtree less, or a joint, at another configuration: an error that is barely beyond its bound is so at few of them.
-pub fn fewer_bodies_elsewhere(case: &Case) -> Vec<Step> {
+pub fn fewer_bodies_elsewhere(case: &Subject) -> Vec<Step> {
     // The others are what they are by their configuration.
     if !matches!(case.kind, StateCase::Random | StateCase::Fast) {
         return Vec::new();
     }
-    let acts: [fn(&mut Case, usize); 2] = [cut, |case, at| weld(&mut case.description.bodies, at)];
+    let acts: [fn(&mut Subject, usize); 2] = [cut, |case, at| weld(&mut case.description.bodies, at)];
     let mut steps: Vec<Step> = Vec::new();
     for root in 0..case.description.bodies.len() {
         for (act, draw) in acts.into_iter().flat_map(|act| (0..DRAWS).map(move |draw| (act, draw))) {
@@ -54,7 +54,7 @@ pub fn fewer_bodies_elsewhere(case: &Case) -> Vec<Step> {
 }
 
 /// A joint less: its body becomes a part of its parent, or of the world.
-pub fn fewer_joints(case: &Case) -> Vec<Step> {
+pub fn fewer_joints(case: &Subject) -> Vec<Step> {
     let of = |at: usize| -> Step { Box::new(move |case| weld(&mut case.description.bodies, at)) };
     (0..case.description.bodies.len()).map(of).collect()
 }
@@ -66,7 +66,7 @@ fn weld(bodies: &mut [BodyDescription], at: usize) {
 }
 
 /// Coordinates, velocities, accelerations or forces that are zero: of all joints, then of each.
-pub fn simpler_state(case: &Case) -> Vec<Step> {
+pub fn simpler_state(case: &Subject) -> Vec<Step> {
     let zero: [fn(&mut JointState, JointType); 4] =
         [|at, kind| at.q = neutral(kind), |at, _| at.v.fill(0.0), |at, _| at.a.fill(0.0), |at, _| at.tau.fill(0.0)];
     let mut steps: Vec<Step> = Vec::new();
@@ -82,7 +82,7 @@ pub fn simpler_state(case: &Case) -> Vec<Step> {
 }
 
 /// Acts on the state of all joints, or of one.
-fn each_joint(case: &mut Case, only: Option<usize>, mut act: impl FnMut(&mut JointState, JointType)) {
+fn each_joint(case: &mut Subject, only: Option<usize>, mut act: impl FnMut(&mut JointState, JointType)) {
     for (_, body) in case.description.bodies.iter().enumerate().filter(|(at, _)| only.is_none_or(|only| only == *at)) {
         if let Some(state) = case.state.get_mut(&body.name) {
             act(state, body.joint.kind);
@@ -91,7 +91,7 @@ fn each_joint(case: &mut Case, only: Option<usize>, mut act: impl FnMut(&mut Joi
 }
 
 /// Bodies and joints without what they need not have: of all, then of each.
-pub fn simpler_bodies(case: &Case) -> Vec<Step> {
+pub fn simpler_bodies(case: &Subject) -> Vec<Step> {
     let simpler: [fn(&mut BodyDescription); 9] = [
         |body| {
             let JointDescription { name, kind, placement, armature, .. } = std::mem::take(&mut body.joint);
@@ -138,7 +138,7 @@ pub fn simpler_bodies(case: &Case) -> Vec<Step> {
 }
 
 /// Another joint of one degree of freedom in place of one; its state is the first numbers of the old one.
-fn other_joint(case: &mut Case, at: usize, kind: JointType) {
+fn other_joint(case: &mut Subject, at: usize, kind: JointType) {
     weld(&mut case.description.bodies, at);
     let Some(body) = case.description.bodies.get_mut(at) else { return };
     body.joint.kind = kind;
@@ -150,7 +150,7 @@ fn other_joint(case: &mut Case, at: usize, kind: JointType) {
 }
 
 /// Numbers of fewer digits: all, then those of each body, then the state's.
-pub fn fewer_digits(case: &Case) -> Vec<Step> {
+pub fn fewer_digits(case: &Subject) -> Vec<Step> {
     let mut steps: Vec<Step> = Vec::new();
     for digits in DIGITS {
         steps.push(Box::new(move |case| {

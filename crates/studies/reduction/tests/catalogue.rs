@@ -3,7 +3,7 @@
 use crate::reduce::{Faulty, balls, robot};
 use featherbench_bench::{DeviationFile, Engine, Engines, Gates, Quantity, Range, RangeKey, Ranges, Robot};
 use featherbench_engines::Featherbench;
-use featherbench_reduction::{Case, Catalogue, Fault, Finding, Kind, Line, Status, entries, reduce, section};
+use featherbench_reduction::{Catalogue, Failure, Fault, Kind, Line, Status, Subject, entries, reduce, section};
 use featherbench_results::{Row, Verdict};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -130,7 +130,7 @@ fn trees() -> impl Iterator<Item = Robot> {
     all.filter(move |robot| has(robot, "spherical") && has(robot, "prismatic")).take(3)
 }
 
-fn finding(id: &str, robot: &Robot) -> Finding {
+fn finding(id: &str, robot: &Robot) -> Failure {
     let row = Row {
         study: "agreement".into(),
         quantity: "id".into(),
@@ -141,7 +141,7 @@ fn finding(id: &str, robot: &Robot) -> Finding {
         params: format!("{{\"deviation\":\"{id}\"}}"),
         ..Row::default()
     };
-    Finding::of(&row).unwrap()
+    Failure::of(&row).unwrap()
 }
 
 #[test]
@@ -152,10 +152,10 @@ fn a_case_stays_in_the_class_of_its_deviation() {
             let engine = Faulty { inner: Featherbench::new(), alter: balls, lost };
             let (gates, finding) = (gates(&robot, 1e-3), finding(id, &robot));
             let shown = |robot: &Robot| finding.shown(&engine, &gates, robot);
-            let given = shown(&Case::of(&robot, 0).robot().unwrap()).unwrap();
+            let given = shown(&Subject::of(&robot, 0).robot().unwrap()).unwrap();
             assert_eq!(given.kind, kind, "{} {id}", robot.name);
             let severity = |robot: &Robot| shown(robot).filter(|shown| shown.kind == kind).map(|shown| shown.severity);
-            let reduced = reduce(Case::of(&robot, 0), 0.0, &severity).unwrap();
+            let reduced = reduce(Subject::of(&robot, 0), 0.0, &severity).unwrap();
             // The fault takes a ball. The class takes a slide, which the fault would not.
             let mut joints: Vec<&str> = reduced.case.description.bodies.iter().map(|body| body.joint.kind.name()).collect();
             joints.sort_unstable();
@@ -173,22 +173,22 @@ fn a_case_stays_in_the_class_of_its_deviation() {
 fn another_fault_is_not_taken_for_a_known_one() {
     let robot = trees().next().unwrap();
     let engine = Faulty { inner: Featherbench::new(), alter: balls, lost: false };
-    let one = Case::of(&robot, 0).robot().unwrap();
+    let one = Subject::of(&robot, 0).robot().unwrap();
     assert!(finding("heavy", &robot).shown(&engine, &gates(&robot, 1e-3), &one).is_some());
     // Larger than known, or of another robot.
     assert_eq!(finding("heavy", &robot).shown(&engine, &gates(&robot, 1e-11), &one), None);
     let other = Robot { name: "other".into(), ..one };
     assert_eq!(finding("heavy", &robot).shown(&engine, &gates(&robot, 1e-3), &other), None);
-    let unknown = Finding { fault: Fault::Unknown, ..finding("heavy", &robot) };
+    let unknown = Failure { fault: Fault::Unknown, ..finding("heavy", &robot) };
     assert!(unknown.shown(&engine, &gates(&robot, 1e-3), &other).is_some(), "that is a failure for no known cause");
 }
 
 #[test]
 fn what_asks_for_more_than_a_state_is_no_finding() {
     let row = Row { study: "agreement".into(), quantity: "id".into(), verdict: Verdict::Fail, ..Row::default() };
-    assert_eq!(Finding::of(&row).unwrap().quantity, Quantity::InverseDynamics);
+    assert_eq!(Failure::of(&row).unwrap().quantity, Quantity::InverseDynamics);
     for (study, quantity, metric) in [("import", "import", ""), ("agreement", "id_wrench", ""), ("agreement", "id", "pairwise")] {
         let row = Row { study: study.into(), quantity: quantity.into(), metric: metric.into(), ..row.clone() };
-        assert_eq!(Finding::of(&row), None, "{study} {quantity} {metric}");
+        assert_eq!(Failure::of(&row), None, "{study} {quantity} {metric}");
     }
 }

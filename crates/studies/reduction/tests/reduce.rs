@@ -3,7 +3,7 @@
 use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Quantity, Robot};
 use featherbench_engines::Featherbench;
 use featherbench_model::{Description, JointType};
-use featherbench_reduction::{Case, KEEP, reduce, severity};
+use featherbench_reduction::{KEEP, Subject, reduce, severity};
 use featherbench_results::ModelOrigin;
 use featherbench_robots::{Family, StateBatch};
 use std::ops::Range;
@@ -102,7 +102,7 @@ fn a_planted_fault_is_reduced_to_its_bodies() {
             {
                 let what = format!("{} {method}", robot.name);
                 let given = severity(&engine, &robot, quantity, method).unwrap();
-                let reduced = reduce(Case::of(&robot, 0), 1e-10, &|robot| severity(&engine, robot, quantity, method)).unwrap();
+                let reduced = reduce(Subject::of(&robot, 0), 1e-10, &|robot| severity(&engine, robot, quantity, method)).unwrap();
                 assert_eq!(reduced.before, given, "{what}");
                 assert!(reduced.case.description.bodies.len() <= bodies, "{what}: {:?}", reduced.case);
                 // What is told of the reduced case is what the case itself shows, and it is the fault that shows it.
@@ -120,7 +120,7 @@ fn a_planted_fault_is_reduced_to_its_bodies() {
 #[test]
 fn a_case_is_the_robot_at_its_state() {
     let robot = robot("tree:n=9,joints=all,seed=5,base=free");
-    let again = Case::of(&robot, 0).robot().unwrap();
+    let again = Subject::of(&robot, 0).robot().unwrap();
     let of = |robot: &Robot| [robot.states.q(0), robot.states.v(0), robot.states.a(0), robot.states.tau(0)].concat();
     assert_eq!((of(&again), &again.description.bodies), (of(&robot), &robot.description.bodies));
 }

@@ -1,6 +1,6 @@
 //! The messages to an oracle and its answers, and the findings about them.
 
-use super::{Conformance, Finding, Standing};
+use super::{Conformance, Remark, Standing};
 use crate::request;
 use featherbench_bench::Robot;
 use featherbench_protocol::{Block, Message, Process};
@@ -88,7 +88,7 @@ impl<'a> Exchange<'a> {
     /// Notes a finding. It is not noted twice if an earlier one about the same thing was as good.
     pub(super) fn note(&mut self, standing: Standing, what: &str, found: &str, advice: &[&str]) {
         let advice = advice.iter().map(|&line| line.to_owned()).collect();
-        let finding = Finding { standing, what: what.to_owned(), found: found.to_owned(), advice };
+        let finding = Remark { standing, what: what.to_owned(), found: found.to_owned(), advice };
         if !self.conformance.findings.contains(&finding) {
             self.conformance.findings.push(finding);
         }

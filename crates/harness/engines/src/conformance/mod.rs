@@ -45,9 +45,9 @@ pub enum Standing {
     Wrong,
 }
 
-/// One finding about an oracle.
+/// One remark about an oracle.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
+pub struct Remark {
     /// Its result.
     pub standing: Standing,
     /// What was tested.
@@ -68,7 +68,7 @@ pub struct Conformance {
     /// The ways to step that it offers, if it integrates.
     pub steps: Vec<String>,
     /// The findings, in the order in which they were made.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<Remark>,
 }
 
 impl Conformance {
@@ -78,7 +78,7 @@ impl Conformance {
     }
 
     /// The findings of one standing.
-    pub fn of(&self, standing: Standing) -> impl Iterator<Item = &Finding> {
+    pub fn of(&self, standing: Standing) -> impl Iterator<Item = &Remark> {
         self.findings.iter().filter(move |finding| finding.standing == standing)
     }
 }

@@ -7,6 +7,7 @@ use crate::scenes::section::views;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
 use featherbench_study::known::{beside, defined_by, passed, table};
+use featherbench_study::rows_of;
 use maud::{Markup, html};
 use serde::Deserialize;
 
@@ -48,9 +49,7 @@ const QUANTITIES: [(&str, &str); 17] = [
 
 /// Makes the section, if the run has rows of the study.
 pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
-    let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
-    let Some(first) = rows.first() else { return Vec::new() };
-    let chunk = overview.chunk_of(first);
+    let Some((rows, chunk)) = rows_of(rows, STUDY, overview) else { return Vec::new() };
     vec![Section::new("contact", "Contact", body(&rows, &figures(&rows), &chunk))]
 }
 

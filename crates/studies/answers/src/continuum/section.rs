@@ -9,6 +9,7 @@ use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo, Verdict};
 use featherbench_study::known::{beside, passed, table};
+use featherbench_study::rows_of;
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 
@@ -64,9 +65,7 @@ const QUANTITIES: [(&str, &str); 20] = [
 
 /// Makes the section, if the run has rows of the study.
 pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
-    let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
-    let Some(first) = rows.first() else { return Vec::new() };
-    let chunk = overview.chunk_of(first);
+    let Some((rows, chunk)) = rows_of(rows, STUDY, overview) else { return Vec::new() };
     vec![Section::new("continuum", "Continua", body(&rows, &figures(&rows), &chunk))]
 }
 

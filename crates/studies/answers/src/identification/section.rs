@@ -7,6 +7,7 @@ use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
 use featherbench_study::known::{passed, table};
+use featherbench_study::rows_of;
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 
@@ -36,9 +37,7 @@ struct Figures<'a> {
 
 /// Makes the section, if the run has rows of the study.
 pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
-    let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
-    let Some(first) = rows.first() else { return Vec::new() };
-    let chunk = overview.chunk_of(first);
+    let Some((rows, chunk)) = rows_of(rows, STUDY, overview) else { return Vec::new() };
     vec![Section::new("identification", "Identification", body(&rows, &chunk))]
 }
 

@@ -8,7 +8,8 @@ use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, opener};
 use featherbench_results::{Row, RunInfo};
 use featherbench_study::figures::{drawing, errors, point, told};
-use featherbench_study::known::passed;
+use featherbench_study::known::{passed, value};
+use featherbench_study::rows_of;
 use maud::{Markup, html};
 
 /// A share of the right value below which the lesson's is the same.
@@ -61,16 +62,8 @@ impl<'a> Decided<'a> {
 
 /// Makes the section, if the run has rows of the study.
 pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
-    let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
-    let Some(first) = rows.first() else { return Vec::new() };
-    let chunk = overview.chunk_of(first);
+    let Some((rows, chunk)) = rows_of(rows, STUDY, overview) else { return Vec::new() };
     vec![Section::new("lesson", "Lesson", body(&rows, &chunk))]
-}
-
-/// The value of a metric of a case by a method.
-fn value(rows: &[&Row], quantity: &str, family: &str, method: &str, metric: &str) -> Option<f64> {
-    let is_it = |row: &&&Row| row.quantity == quantity && row.family == family && row.method == method && row.metric == metric;
-    rows.iter().find(is_it)?.value
 }
 
 fn stages<'a>(rows: &[&'a Row]) -> Stages<'a> {

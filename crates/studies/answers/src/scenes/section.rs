@@ -11,6 +11,7 @@ use featherbench_report::{Overview, Section, opener};
 use featherbench_results::{Row, RunInfo, Verdict};
 use featherbench_scenes::systems::{BoxOnBalls, BoxStack, Incline, Rod, Standing, Table};
 use featherbench_scenes::{OwnSolver, Question, simulate};
+use featherbench_study::rows_of;
 use maud::{Markup, html};
 
 /// A variant with its points.
@@ -38,9 +39,7 @@ struct Figures<'a> {
 
 /// Makes the section, if the run has rows of the study.
 pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
-    let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
-    let Some(first) = rows.first() else { return Vec::new() };
-    let chunk = overview.chunk_of(first);
+    let Some((rows, chunk)) = rows_of(rows, STUDY, overview) else { return Vec::new() };
     let figures = Figures { rose: rose(&rows), errors: errors(&rows), bounce: bounce(&rows) };
     let (questions, parts) = drawings::questions(&figures.errors);
     vec![Section { parts, ..Section::new("scenes", "Scenes", body(&rows, &figures, &questions, &chunk)) }]

@@ -8,7 +8,7 @@ use super::rates::SIZES;
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
-use featherbench_study::known::{beside, defined_by, passed, table};
+use featherbench_study::known::{beside, defined_by, passed, table, value};
 use featherbench_study::rows_of;
 use maud::{Markup, html};
 
@@ -45,12 +45,6 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let Some((rows, chunk)) = rows_of(rows, STUDY, overview) else { return Vec::new() };
     let figures = Figures { rates: rates(&rows), density: density(&rows), arm: arm(&rows) };
     vec![Section::new("uncertainty", "Uncertainty", body(&rows, &figures, &chunk))]
-}
-
-/// The value of a metric of a case.
-fn value(rows: &[&Row], quantity: &str, family: &str, method: &str, metric: &str) -> Option<f64> {
-    let of = |row: &&&Row| row.quantity == quantity && row.family == family && row.method == method && row.metric == metric;
-    rows.iter().find(of)?.value
 }
 
 fn rates<'a>(rows: &[&'a Row]) -> Vec<Rate<'a>> {

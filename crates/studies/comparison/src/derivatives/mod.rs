@@ -14,7 +14,7 @@ pub(crate) mod section;
 pub(crate) mod words;
 
 use featherbench_bench::measure::{ForwardScale, ratio, scaled_error, worst};
-use featherbench_bench::statistics::quantile;
+use featherbench_bench::statistics::quantile_of;
 use featherbench_bench::truth::TrueDerivatives;
 use featherbench_bench::{Asked, Cell, Context, DENSE_LIMIT, Finished, NoAnswer, OWN, Outcome, Quantity, Robot, Study, derivative_floor};
 use featherbench_results::{Row, Verdict, canonical_json};
@@ -192,12 +192,7 @@ fn per_case(robot: &Robot, errors: &[f64], growth: &[f64]) -> Vec<(Case, usize)>
 
 /// The median; NaN if one of them is.
 fn median(errors: &[f64]) -> f64 {
-    let mut sorted = errors.to_vec();
-    if sorted.iter().any(|error| error.is_nan()) {
-        return f64::NAN;
-    }
-    sorted.sort_unstable_by(f64::total_cmp);
-    quantile(&sorted, 0.5)
+    if errors.iter().any(|error| error.is_nan()) { f64::NAN } else { quantile_of(errors, 0.5) }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Armature on free joints. Engines mean different things by it, so descriptions do not have it. The parsers' notes are compared instead.
 
-use super::comparison::Finding;
+use super::comparison::SingleDifference;
 use super::fields::{digits, relative};
 use super::{Cause, Difference, Field};
 use featherbench_bench::ImportNote;
@@ -9,7 +9,7 @@ use featherbench_bench::ImportNote;
 const FREE_ARMATURE: &str = "free_armature";
 
 /// Whether an engine has another armature on a free joint than the reference: the notes of both give what they removed.
-pub(super) fn on_free_joints(reference: &[ImportNote], notes: &[ImportNote]) -> Vec<Finding> {
+pub(super) fn on_free_joints(reference: &[ImportNote], notes: &[ImportNote]) -> Vec<SingleDifference> {
     let of = |notes: &[ImportNote], joint: &str| -> Vec<f64> {
         let held = notes.iter().find(|note| note.cause == FREE_ARMATURE && note.about.as_deref() == Some(joint));
         held.filter(|note| note.numbers.len() == 6).map_or_else(|| vec![0.0; 6], |note| note.numbers.clone())
@@ -33,7 +33,7 @@ pub(super) fn on_free_joints(reference: &[ImportNote], notes: &[ImportNote]) -> 
             account: None,
             note: Some("armature of a free joint: it is taken out of both sides before answers are compared".into()),
         };
-        (ours != theirs).then_some(Finding { difference, alone: None })
+        (ours != theirs).then_some(SingleDifference { difference, alone: None })
     };
     joints.into_iter().filter_map(finding).collect()
 }

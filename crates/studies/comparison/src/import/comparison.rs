@@ -14,14 +14,14 @@ use std::collections::HashMap;
 #[derive(Clone, Debug)]
 pub struct Comparison {
     /// Every difference: first missing or added bodies, then body by body in our order, then those of the whole robot.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<SingleDifference>,
     /// Our robot without the bodies that theirs does not have as moving bodies.
     pub ours: Description,
 }
 
 /// A difference, and our robot with this difference alone.
 #[derive(Clone, Debug)]
-pub struct Finding {
+pub struct SingleDifference {
     /// The difference.
     pub difference: Difference,
     /// Our robot where this one field has their value; `None` if that is not the same robot any more.
@@ -35,7 +35,7 @@ impl Comparison {
         let partner = pairs(&ours, &theirs);
         let gone: Vec<usize> = (0..ours.bodies.len()).filter(|&i| partner[i].is_none()).collect();
         let extra: Vec<usize> = (0..theirs.bodies.len()).filter(|j| !partner.contains(&Some(*j))).collect();
-        let mut findings: Vec<Finding> = extra.iter().map(|&j| added(&theirs.bodies[j])).collect();
+        let mut findings: Vec<SingleDifference> = extra.iter().map(|&j| added(&theirs.bodies[j])).collect();
         let names: HashMap<&str, &str> = partner
             .iter()
             .enumerate()
@@ -46,7 +46,7 @@ impl Comparison {
             return Self { findings, ours };
         };
         // A missing body was merged into its parent, or dropped with its mass: the numbers of the other bodies show which.
-        let mut best: Option<(usize, Mass, Description, Vec<Finding>)> = None;
+        let mut best: Option<(usize, Mass, Description, Vec<SingleDifference>)> = None;
         let hypotheses: &[Mass] = if gone.is_empty() { &[Mass::Kept] } else { &[Mass::Kept, Mass::Dropped] };
         for &mass in hypotheses {
             let Some(left) = without(&ours, &gone, mass) else { continue };
@@ -89,7 +89,7 @@ fn without(description: &Description, gone: &[usize], mass: Mass) -> Option<Desc
     reduced.canonical().ok()
 }
 
-fn missing(body: &BodyDescription, mass: Mass, notes: &[ImportNote]) -> Finding {
+fn missing(body: &BodyDescription, mass: Mass, notes: &[ImportNote]) -> SingleDifference {
     let (cause, theirs) = match mass {
         Mass::Kept => (Cause::Merged, "fixed to its parent"),
         Mass::Dropped => (Cause::Dropped, "none, and its mass is gone"),
@@ -106,21 +106,27 @@ fn missing(body: &BodyDescription, mass: Mass, notes: &[ImportNote]) -> Finding 
     finding
 }
 
-fn added(body: &BodyDescription) -> Finding {
+fn added(body: &BodyDescription) -> SingleDifference {
     let theirs = format!("{} joint '{}', {} kg", body.joint.kind.name(), body.joint.name, digits(body.mass, 0.0));
     whole(&body.name, Field::Body, "none".into(), theirs, Cause::Added)
 }
 
 /// A difference of a kind that has no number: its size is one.
-fn whole(body: &str, field: Field, ours: String, theirs: String, cause: Cause) -> Finding {
-    Finding {
+fn whole(body: &str, field: Field, ours: String, theirs: String, cause: Cause) -> SingleDifference {
+    SingleDifference {
         difference: Difference { body: body.to_owned(), field, ours, theirs, size: 1.0, cause, account: None, note: None },
         alone: None,
     }
 }
 
 /// The differences of two robots with the same bodies; `names` maps our names to theirs.
-fn shared(ours: &Description, theirs: &Description, names: &HashMap<&str, &str>, links: &[FileLink], notes: &[ImportNote]) -> Vec<Finding> {
+fn shared(
+    ours: &Description,
+    theirs: &Description,
+    names: &HashMap<&str, &str>,
+    links: &[FileLink],
+    notes: &[ImportNote],
+) -> Vec<SingleDifference> {
     let place: HashMap<&str, usize> = theirs.bodies.iter().enumerate().map(|(j, body)| (body.name.as_str(), j)).collect();
     let partner: Vec<Option<usize>> =
         ours.bodies.iter().map(|body| names.get(body.name.as_str()).and_then(|name| place.get(name)).copied()).collect();
@@ -166,7 +172,7 @@ fn finding(
     (field, size): (Field, f64),
     account: Option<Account>,
     notes: &[&ImportNote],
-) -> Finding {
+) -> SingleDifference {
     let body = &ours.bodies[i];
     let (untested, note) = cause(field, body, aligned, notes);
     let (cause, account) = account.map_or((untested, None), |account| (account.cause, Some(account.text)));
@@ -179,7 +185,7 @@ fn finding(
         fields::copy(field, aligned, &mut alone.bodies[i]);
         alone
     });
-    Finding { difference, alone }
+    SingleDifference { difference, alone }
 }
 
 /// The parser's notes about a body: about its link, its joint or the links that are fixed to it, or about the whole file.
@@ -195,7 +201,7 @@ fn about<'a>(ours: &Description, i: usize, theirs: &BodyDescription, notes: &'a 
     notes.iter().filter(concerns).collect()
 }
 
-fn gravity(ours: &Description, theirs: &Description) -> Option<Finding> {
+fn gravity(ours: &Description, theirs: &Description) -> Option<SingleDifference> {
     let far = fields::norm(ours.gravity).max(fields::norm(theirs.gravity));
     let size = featherbench_bench::measure::ratio(fields::distance(ours.gravity, theirs.gravity), far);
     let text = |g: [f64; 3]| format!("({}) m/s²", g.map(|x| digits(x, size)).join(", "));
@@ -208,7 +214,7 @@ fn gravity(ours: &Description, theirs: &Description) -> Option<Finding> {
 }
 
 /// A difference in the order of joints, described from the first to the last that is elsewhere.
-fn order(ours: &Description, partner: &[Option<usize>]) -> Option<Finding> {
+fn order(ours: &Description, partner: &[Option<usize>]) -> Option<SingleDifference> {
     let mut sorted: Vec<(usize, usize)> = partner.iter().enumerate().filter_map(|(i, j)| Some(((*j)?, i))).collect();
     let own: Vec<usize> = sorted.iter().map(|&(_, i)| i).collect();
     sorted.sort_unstable();

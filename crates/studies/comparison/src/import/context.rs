@@ -1,6 +1,6 @@
 //! Causes that need more than one number: an edit of a neighbouring body, of its chain, or of the whole robot.
 
-use super::comparison::Finding;
+use super::comparison::SingleDifference;
 use super::fields::{self, ROUNDING};
 use super::{Cause, Difference, Field};
 use featherbench_model::{BodyDescription, Description, JointType, Placement};
@@ -12,7 +12,7 @@ pub(super) fn explain(
     ours: &Description,
     theirs: (&Description, &[Option<usize>]),
     written: &[Option<BodyDescription>],
-    findings: &mut [Finding],
+    findings: &mut [SingleDifference],
     reach: f64,
 ) {
     planar_axis(ours, theirs, findings, reach);
@@ -25,13 +25,13 @@ pub(super) fn explain(
 }
 
 /// Differences without a cause yet.
-fn unexplained(findings: &mut [Finding]) -> impl Iterator<Item = &mut Difference> {
+fn unexplained(findings: &mut [SingleDifference]) -> impl Iterator<Item = &mut Difference> {
     findings.iter_mut().map(|finding| &mut finding.difference).filter(|difference| difference.cause == Cause::Number)
 }
 
 /// A planar joint whose plane is z, whatever axis the file gives: the link has the joint's own frame. `chained` writes the joint as two
 /// slides and a rotation, and our parser leaves a frame where the link is in the plane.
-fn planar_axis(ours: &Description, (theirs, partner): (&Description, &[Option<usize>]), findings: &mut [Finding], reach: f64) {
+fn planar_axis(ours: &Description, (theirs, partner): (&Description, &[Option<usize>]), findings: &mut [SingleDifference], reach: f64) {
     for end in 2..ours.bodies.len() {
         let body = &ours.bodies[end];
         let first = end - 2;
@@ -84,7 +84,7 @@ fn one_factor(ours: &Description, written: &[Option<BodyDescription>]) -> bool {
 }
 
 /// A floating base whose coordinates are those of another link: one that is fixed to our root, if the parser drops an empty root.
-fn other_root(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [Finding], reach: f64) {
+fn other_root(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [SingleDifference], reach: f64) {
     for (root, theirs) in written.iter().enumerate() {
         let Some(theirs) = theirs.as_ref().filter(|theirs| theirs.joint.kind == JointType::Free) else { continue };
         let Some(frame) = ours.frames.iter().find(|frame| frame.body == Some(root) && frame.name == theirs.name) else { continue };
@@ -105,7 +105,7 @@ fn other_root(ours: &Description, written: &[Option<BodyDescription>], findings:
 
 /// The joints of one link are a chain of massless bodies before it. If the whole chain leads to the same place and its parts do not, the
 /// link's pose was put at another joint of the chain.
-fn between_joints(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [Finding], reach: f64) {
+fn between_joints(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [SingleDifference], reach: f64) {
     for end in 0..ours.bodies.len() {
         let mut chain = vec![end];
         while let Some(parent) = ours.bodies[chain[chain.len() - 1]].parent.filter(|&parent| ours.bodies[parent].mass == 0.0) {

@@ -26,7 +26,7 @@ mod subtree;
 pub(crate) mod words;
 
 pub use answers::{Answer, Largest, Loads, answers, repairs};
-pub use comparison::{Comparison, Finding};
+pub use comparison::{Comparison, SingleDifference};
 pub use difference::{Cause, Class, Difference, Field, Weight};
 pub use replay::Effect;
 pub use subtree::{SubTree, bound};

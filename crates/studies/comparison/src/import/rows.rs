@@ -2,7 +2,7 @@
 
 use super::replay::{Answers, Reference, Replay, carried, replay};
 use super::subtree::{SubTree, unexplained};
-use super::{Class, Comparison, Effect, Finding, LARGEST, READING, Weight, armature, as_read, bound, reference};
+use super::{Class, Comparison, Effect, LARGEST, READING, SingleDifference, Weight, armature, as_read, bound, reference};
 use featherbench_bench::measure::worst;
 use featherbench_bench::{Cell, Context, FileFormat, Finished, Import, ImportNote, NoAnswer, OWN, Outcome, Quantity, Robot};
 use featherbench_results::{Row, Verdict, canonical_json};
@@ -87,7 +87,7 @@ impl OfEngine<'_> {
         let own = alterable(&comparison, self.robot);
         let states = &self.robot.states;
         let afforded = (WORK / (states.count() * states.nv * states.nv).max(1)).max(LEAST_ALONE);
-        let alone = |(k, finding): (usize, &Finding)| {
+        let alone = |(k, finding): (usize, &SingleDifference)| {
             let alone = finding.alone.as_ref().filter(|_| k < afforded);
             alone.zip(own.as_ref()).and_then(|(alone, own)| own.effect_of(alone))
         };
@@ -111,7 +111,7 @@ impl OfEngine<'_> {
         rows
     }
 
-    fn class(&self, finding: &Finding, effect: Option<&Effect>) -> Class {
+    fn class(&self, finding: &SingleDifference, effect: Option<&Effect>) -> Class {
         let largest = effect.map(|effect| worst(effect.id, effect.mass_matrix));
         Class::of(finding.difference.field, largest, bound(self.robot.depth))
     }
@@ -135,7 +135,7 @@ impl OfEngine<'_> {
         Row { params: self.params(more), ..self.row(self.cell, "differences") }.informed(felt as f64)
     }
 
-    fn difference(&self, finding: &Finding, alone: Option<&Effect>) -> Row {
+    fn difference(&self, finding: &SingleDifference, alone: Option<&Effect>) -> Row {
         let difference = &finding.difference;
         let number = |of: fn(&Effect) -> f64| alone.map(of).filter(|error| error.is_finite());
         let more = json!({

@@ -12,7 +12,7 @@ mod pinocchio;
 mod tests;
 mod theirs;
 
-use crate::{Finding, true_answer};
+use crate::{Failure, true_answer};
 use featherbench_bench::measure::{ForwardScale, Magnitudes};
 use featherbench_bench::{OWN, Quantity, Robot};
 use featherbench_model::BodyDescription;
@@ -48,7 +48,7 @@ fn interface(engine: &str) -> Option<&'static Interface> {
 }
 
 /// The program of a case; `None` where the engine or the method has no such program, or the engine lacks a joint of the robot.
-pub fn of(engine: &str, version: &str, finding: &Finding, robot: &Robot) -> Option<String> {
+pub fn of(engine: &str, version: &str, finding: &Failure, robot: &Robot) -> Option<String> {
     let interface = interface(engine)?;
     let quantity = if finding.quantity == Quantity::MassMatrixProbe { Quantity::MassMatrix } else { finding.quantity };
     let (.., answer) = interface.answers.iter().find(|(of, method, _)| *of == quantity.name() && *method == finding.method)?;

@@ -1,7 +1,7 @@
 //! The programs are run by the engines themselves: on every joint that an engine has, they find the truth.
 
 use super::{interface, of};
-use crate::{Case, Fault, Finding};
+use crate::{Failure, Fault, Subject};
 use featherbench_bench::{Quantity, Robot};
 use featherbench_results::ModelOrigin;
 use featherbench_robots::Family;
@@ -39,11 +39,11 @@ fn python() -> Option<PathBuf> {
 fn robot(kind: &str, base: &str, more: &str) -> Robot {
     let description = Family::parse(&format!("joints:kind={kind},base={base}{more}")).unwrap().generate().unwrap();
     let robot = Robot::new(&description, "joints", ModelOrigin::Generated, 1, 7).unwrap();
-    Case::of(&robot, 0).robot().unwrap()
+    Subject::of(&robot, 0).robot().unwrap()
 }
 
-fn finding(quantity: Quantity, metric: &str, method: &str) -> Finding {
-    Finding { study: "agreement".into(), quantity, method: method.into(), metric: metric.into(), states: None, fault: Fault::Unknown }
+fn finding(quantity: Quantity, metric: &str, method: &str) -> Failure {
+    Failure { study: "agreement".into(), quantity, method: method.into(), metric: metric.into(), states: None, fault: Fault::Unknown }
 }
 
 /// Runs programs, each of which finds the truth.
@@ -144,16 +144,16 @@ fn armature_is_set_or_there_is_no_program() {
 #[test]
 fn without_a_true_answer_the_answer_is_printed() {
     let mut robot = robot("revolute", "fixed", ",shape=single");
-    let finding = Finding { metric: String::new(), ..finding(Quantity::ForwardDynamics, "", "aba_local") };
+    let finding = Failure { metric: String::new(), ..finding(Quantity::ForwardDynamics, "", "aba_local") };
     assert!(of("pinocchio", "1", &finding, &robot).unwrap().ends_with("print(answer)\n"));
     // At rest without gravity the true acceleration is zero.
     robot.description.gravity = [0.0; 3];
     for numbers in [&mut robot.states.v, &mut robot.states.tau] {
         numbers.fill(0.0);
     }
-    let relative = Finding { metric: "true_forward".into(), ..finding.clone() };
+    let relative = Failure { metric: "true_forward".into(), ..finding.clone() };
     assert!(of("pinocchio", "1", &relative, &robot).unwrap().ends_with("print(answer)\n"));
     // The backward error is relative to its terms.
-    let backward = Finding { metric: "backward".into(), ..finding };
+    let backward = Failure { metric: "backward".into(), ..finding };
     assert!(of("pinocchio", "1", &backward, &robot).unwrap().ends_with("terms).max())\n"));
 }

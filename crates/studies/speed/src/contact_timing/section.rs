@@ -8,6 +8,7 @@ use featherbench_report::{Overview, Section, labels, opener};
 use featherbench_results::{Row, RunInfo, Verdict};
 use featherbench_spatial::{larger, smaller};
 use featherbench_study::figures::{drawing, nth, point, told};
+use featherbench_study::rows_of;
 use maud::{Markup, html};
 
 /// A time of a method on a robot.
@@ -28,9 +29,7 @@ struct Time<'a> {
 
 /// Makes the section, if the run has rows of the study.
 pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
-    let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
-    let Some(first) = rows.first() else { return Vec::new() };
-    let chunk = overview.chunk_of(first);
+    let Some((rows, chunk)) = rows_of(rows, STUDY, overview) else { return Vec::new() };
     let times = times(&rows);
     vec![Section::new("contact_timing", "Contact timing", body(&rows, &times, &chunk))]
 }

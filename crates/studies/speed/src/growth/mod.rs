@@ -183,7 +183,7 @@ impl Growth {
     fn too_long(&self, points: &[Point], sizes: &[u64]) -> Option<Stop> {
         let [.., before, last] = points else { return None };
         let [m, n, next] = *sizes.get(points.len() - 2..=points.len())? else { return None };
-        let took = |point: &Point| point.build + 2.0 * slope::median(point.calls.clone());
+        let took = |point: &Point| point.build + 2.0 * slope::median(&point.calls);
         let steps = (next as f64 / n as f64).ln() / (n as f64 / m as f64).ln();
         let expected = took(last) * (took(last) / took(before)).powf(steps);
         let patience = self.settings.patience;

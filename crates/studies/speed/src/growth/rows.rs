@@ -128,7 +128,7 @@ fn against_each_other(lines: &Lines) -> Vec<Row> {
         let row = |metric: &str, of: Row| Row { metric: metric.into(), unit: "1".into(), reference: over.into(), ..of };
         let mut ratios = Vec::new();
         for (a, b) in grown.points.iter().zip(&serial.points) {
-            let median = |point: &Point| slope::median(point.calls.clone());
+            let median = |point: &Point| slope::median(&point.calls);
             let ratio = ratio(median(a), median(b));
             ratios.push((a.dofs as f64, ratio));
             rows.push(row("time_ratio", sized(cell, a)).informed(ratio));

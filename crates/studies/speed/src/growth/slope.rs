@@ -4,7 +4,7 @@
 //! medians follow from it. The interval contains the middle of all draws' values. It shows how noise within one process changes the value. It
 //! does not show how another process, with its data elsewhere, would.
 
-use featherbench_bench::statistics::quantile;
+use featherbench_bench::statistics::quantile_of;
 use featherbench_report::fit::power_law;
 use featherbench_robots::Random;
 
@@ -24,17 +24,15 @@ pub(super) struct Interval {
 }
 
 impl Interval {
-    fn of(value: f64, mut draws: Vec<f64>) -> Self {
-        draws.sort_unstable_by(f64::total_cmp);
+    fn of(value: f64, draws: &[f64]) -> Self {
         let tail = 0.5 * (1.0 - LEVEL);
-        Self { value, low: quantile(&draws, tail), high: quantile(&draws, 1.0 - tail) }
+        Self { value, low: quantile_of(draws, tail), high: quantile_of(draws, 1.0 - tail) }
     }
 }
 
 /// The median of values.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    quantile(&values, 0.5)
+pub(super) fn median(values: &[f64]) -> f64 {
+    quantile_of(values, 0.5)
 }
 
 fn drawn(blocks: &[f64], random: &mut Random) -> Vec<f64> {
@@ -43,18 +41,18 @@ fn drawn(blocks: &[f64], random: &mut Random) -> Vec<f64> {
 
 /// The median of blocks, and its interval.
 pub(super) fn of_median(blocks: &[f64], random: &mut Random) -> Interval {
-    let draws = (0..DRAWS).map(|_| median(drawn(blocks, random))).collect();
-    Interval::of(median(blocks.to_vec()), draws)
+    let draws: Vec<f64> = (0..DRAWS).map(|_| median(&drawn(blocks, random))).collect();
+    Interval::of(median(blocks), &draws)
 }
 
 /// The exponent p of time ~ nᵖ over the last two decades of sizes, of (n, blocks); `None` if fewer than three sizes are there.
 pub(super) fn of_exponent(sizes: &[(f64, &[f64])], random: &mut Random) -> Option<Interval> {
     let largest = sizes.last()?.0;
     let last: Vec<_> = sizes.iter().filter(|(n, _)| *n >= DECADES * largest).collect();
-    let value = power_law(last.iter().map(|(n, blocks)| (*n, median(blocks.to_vec()))))?.slope;
-    let draw = |random: &mut Random| Some(power_law(last.iter().map(|(n, blocks)| (*n, median(drawn(blocks, random)))))?.slope);
+    let value = power_law(last.iter().map(|(n, blocks)| (*n, median(blocks))))?.slope;
+    let draw = |random: &mut Random| Some(power_law(last.iter().map(|(n, blocks)| (*n, median(&drawn(blocks, random)))))?.slope);
     let draws: Option<Vec<f64>> = (0..DRAWS).map(|_| draw(random)).collect();
-    Some(Interval::of(value, draws?))
+    Some(Interval::of(value, &draws?))
 }
 
 #[cfg(test)]

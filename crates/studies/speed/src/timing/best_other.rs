@@ -4,7 +4,7 @@ use super::rows::{Check, Experiment, RowParams, estimated, judged};
 use super::samples::Candidate;
 use super::{BEST_OTHER, REFERENCE};
 use featherbench_bench::params;
-use featherbench_bench::statistics::{Estimate, LEVEL, quantile};
+use featherbench_bench::statistics::{Estimate, LEVEL, quantile_of};
 use featherbench_results::Row;
 
 impl Experiment<'_> {
@@ -26,9 +26,8 @@ impl Experiment<'_> {
             let own = &self.candidates[which];
             // The bootstrap, which takes milliseconds, is made of the fastest one alone.
             let median = |other: usize| {
-                let mut ratios: Vec<f64> = samples.of(other).iter().zip(samples.of(which)).map(|(other, own)| other / own).collect();
-                ratios.sort_unstable_by(f64::total_cmp);
-                quantile(&ratios, 0.5)
+                let ratios: Vec<f64> = samples.of(other).iter().zip(samples.of(which)).map(|(other, own)| other / own).collect();
+                quantile_of(&ratios, 0.5)
             };
             let medians = others.iter().map(|&other| (other, median(other)));
             let Some((other, _)) = medians.min_by(|(_, a), (_, b)| a.total_cmp(b)) else { continue };

@@ -4,8 +4,8 @@ use super::machine::Machine;
 use super::samples::{Candidate, Samples};
 use super::{CellKind, MACHINE, Paired, REFERENCE, check};
 use featherbench_bench::measure::worst;
-use featherbench_bench::statistics::quantile;
-use featherbench_bench::statistics::{CONTROL_LEVEL, Estimate, Finding, LEVEL};
+use featherbench_bench::statistics::quantile_of;
+use featherbench_bench::statistics::{CONTROL_LEVEL, Estimate, LEVEL, Pace};
 use featherbench_bench::{Cell, Finished, Gates, NoAnswer, Outcome, Robot, params};
 use featherbench_results::{Kind, Relation, Row, Verdict};
 use featherbench_robots::Random;
@@ -86,11 +86,7 @@ fn overhead(robot: &Robot, (cell, outcome): &Finished) -> Option<Row> {
         ..row(cell, robot)
     };
     match outcome.answer() {
-        Ok(overheads) => {
-            let mut sorted = overheads.to_vec();
-            sorted.sort_unstable_by(f64::total_cmp);
-            Some(blank.informed(quantile(&sorted, 0.5)))
-        }
+        Ok(overheads) => Some(blank.informed(quantile_of(overheads, 0.5))),
         Err(NoAnswer::NotOffered(_)) => None,
         Err(no_answer) => Some(blank.without_value(Verdict::Error, no_answer.to_string())),
     }
@@ -241,10 +237,10 @@ impl<'a> Experiment<'a> {
                 let ratio = Estimate::ratio(ns, samples.of(0), LEVEL, &mut self.random(&format!("{name} ratio")));
                 let blank = Row { unit: "1".into(), reference: usual, ..blank };
                 rows.push(judged(estimated(Row { metric: "ratio".into(), ..blank.clone() }, &ratio), complaint));
-                let finding = match ratio.finding() {
-                    Finding::Slower => 1.0,
-                    Finding::Alike => 0.0,
-                    Finding::Faster => -1.0,
+                let finding = match ratio.pace() {
+                    Pace::Slower => 1.0,
+                    Pace::Alike => 0.0,
+                    Pace::Faster => -1.0,
                 };
                 rows.push(judged(Row { metric: "finding".into(), ..blank }.informed(finding), complaint));
             }
@@ -276,9 +272,7 @@ pub(super) struct RowParams {
 
 impl RowParams {
     fn with_deciles(&self, ns: &[f64]) -> String {
-        let mut sorted = ns.to_vec();
-        sorted.sort_unstable_by(f64::total_cmp);
-        let [p10, p90] = [0.1, 0.9].map(|fraction| Some(quantile(&sorted, fraction)));
+        let [p10, p90] = [0.1, 0.9].map(|fraction| Some(quantile_of(ns, fraction)));
         params::text(&Self { p10, p90, ..self.clone() })
     }
 }

@@ -10,7 +10,7 @@ mod table;
 
 pub use case::{Case, Evaluate, Judged, Number, count, defined_by, error, failed, told};
 pub use featherbench_spatial::{larger, largest};
-pub use table::{beside, passed, table};
+pub use table::{beside, passed, table, value};
 
 use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, Outcome, Study};
 use featherbench_results::Row;

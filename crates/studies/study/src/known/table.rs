@@ -73,6 +73,12 @@ fn row(study: &str, line: &Line, chunk: &str) -> Markup {
     }
 }
 
+/// The value of a metric of a case by a method.
+pub fn value(rows: &[&Row], quantity: &str, family: &str, method: &str, metric: &str) -> Option<f64> {
+    let is_it = |row: &&&Row| row.quantity == quantity && row.family == family && row.method == method && row.metric == metric;
+    rows.iter().find(is_it)?.value
+}
+
 /// The value of another metric of a row's cell.
 pub fn beside(rows: &[&Row], row: &Row, metric: &str) -> Option<f64> {
     rows.iter().find(|other| other.cell == row.cell && other.metric == metric)?.value

@@ -9,7 +9,7 @@ use featherbench_report::{Overview, labels};
 use featherbench_results::Row;
 
 use super::STUDY;
-use featherbench_bench::statistics::quantile;
+use featherbench_bench::statistics::quantile_of;
 use featherbench_study::figures::{Measured, largest, shares};
 
 /// The figures of a quantity: against depth, against size.
@@ -105,9 +105,8 @@ fn distribution(overview: &Overview, rows: &[Row]) -> Option<Figure> {
         }
     }
     let median = |errors: &[(f64, String)]| {
-        let mut values: Vec<f64> = errors.iter().map(|(error, _)| *error).collect();
-        values.sort_unstable_by(f64::total_cmp);
-        quantile(&values, 0.5)
+        let values: Vec<f64> = errors.iter().map(|(error, _)| *error).collect();
+        quantile_of(&values, 0.5)
     };
     let words = |(engine, errors): (&usize, &Vec<(f64, String)>)| {
         format!("{} {} over {}", overview.engines[*engine], short(median(errors)), count(errors.len(), "answer"))

@@ -12,7 +12,7 @@ use maud::{Markup, html};
 use super::STUDY;
 use super::ratios::Ratio;
 use super::speed::times;
-use featherbench_bench::statistics::quantile;
+use featherbench_bench::statistics::quantile_of;
 
 /// The input regime of the verdict: another state at each call, as programs have it.
 const REGIME: &str = "stream";
@@ -95,9 +95,8 @@ impl<'a> SpeedVerdict<'a> {
     pub fn median(&self, engine: usize, quantity: &str) -> Option<(f64, usize, bool)> {
         let of_engine = self.lines.iter().filter(|line| line.quantity == quantity).filter_map(|line| line.ratios.get(&engine));
         let valid: Vec<&Ratio> = of_engine.filter(|ratio| ratio.valid).collect();
-        let mut values: Vec<f64> = valid.iter().map(|ratio| ratio.value).collect();
-        values.sort_unstable_by(f64::total_cmp);
-        (!values.is_empty()).then(|| (quantile(&values, 0.5), values.len(), valid.iter().any(|ratio| ratio.estimated)))
+        let values: Vec<f64> = valid.iter().map(|ratio| ratio.value).collect();
+        (!values.is_empty()).then(|| (quantile_of(&values, 0.5), values.len(), valid.iter().any(|ratio| ratio.estimated)))
     }
 
     /// The engines and quantities of the map, each with [`SpeedVerdict::median`]; engines without one are left out.
