@@ -87,7 +87,7 @@ fn folder(args: &ReduceArgs) -> Result<PathBuf, Fail> {
 fn robots_of(root: &Root, info: &RunInfo, folder: &Path) -> Result<Vec<Robot>, Fail> {
     let run = RunArgs::of_command(&info.command);
     let run = run.ok_or_else(|| Fail::input(format!("{}: its command is none of `run`: {}", folder.display(), info.command)))?;
-    let loaded = robots::load(root, &run.suite, info.live, Some(info.seed), run.size)?;
+    let loaded = robots::load(root, &run.suite, info.live, Some(info.seed), run.asked.size)?;
     if loaded.hash != info.suite_hash {
         tell!("note: {}: the suite {} is another one now", folder.display(), run.suite);
     }

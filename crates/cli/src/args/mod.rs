@@ -101,21 +101,8 @@ pub struct RunArgs {
     /// The suite: a name in datasets/suites, or a TOML file.
     #[arg(long, default_value = "default")]
     pub suite: String,
-    /// Ask the engines themselves instead of their recorded answers.
-    #[arg(long)]
-    pub live: bool,
-    /// The seed of the states, instead of the suite's; recorded answers are to the suite's own.
-    #[arg(long, requires = "live")]
-    pub seed: Option<u64>,
-    /// The number of robots that the suite draws, instead of its own (for suites with a table `[draw]`).
-    #[arg(long, value_name = "N")]
-    pub size: Option<NonZeroUsize>,
-    /// An engine of one's own, as NAME=PROGRAM [ARGS…]: a program that speaks oracles/PROTOCOL.md; may be repeated.
-    #[arg(long = "engine", value_name = "NAME=PROGRAM")]
-    pub externals: Vec<External>,
-    /// Only cells whose path study/robot/engine/quantity/method matches this regular expression.
-    #[arg(long, value_name = "REGEX")]
-    pub filter: Option<String>,
+    #[command(flatten)]
+    pub asked: AskedArgs,
     /// The run's folder; by default a new one in reports/.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -134,18 +121,38 @@ pub struct RunArgs {
     /// Open the report when the run ends.
     #[arg(long)]
     pub open: bool,
-    /// Leave the timing study out.
-    #[arg(long)]
-    pub no_timing: bool,
-    /// Where recorded answers are read from; by default datasets/recorded.
-    #[arg(long, value_name = "DIR")]
-    pub recorded: Option<PathBuf>,
     /// Longest wait for one answer of an engine, in seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 120)]
     pub timeout: u64,
     /// Address space of each engine's process, in MiB.
     #[arg(long, value_name = "MIB", default_value_t = 8192)]
     pub memory: u64,
+}
+
+/// What a run asks of its suite, and who is asked.
+#[derive(Debug, Clone, Args)]
+pub struct AskedArgs {
+    /// Ask the engines themselves instead of their recorded answers.
+    #[arg(long)]
+    pub live: bool,
+    /// The seed of the states, instead of the suite's; recorded answers are to the suite's own.
+    #[arg(long, requires = "live")]
+    pub seed: Option<u64>,
+    /// The number of robots that the suite draws, instead of its own (for suites with a table `[draw]`).
+    #[arg(long, value_name = "N")]
+    pub size: Option<NonZeroUsize>,
+    /// An engine of one's own, as NAME=PROGRAM [ARGS…]: a program that speaks oracles/PROTOCOL.md; may be repeated.
+    #[arg(long = "engine", value_name = "NAME=PROGRAM")]
+    pub externals: Vec<External>,
+    /// Only cells whose path study/robot/engine/quantity/method matches this regular expression.
+    #[arg(long, value_name = "REGEX")]
+    pub filter: Option<String>,
+    /// Leave the timing study out.
+    #[arg(long)]
+    pub no_timing: bool,
+    /// Where recorded answers are read from; by default datasets/recorded.
+    #[arg(long, value_name = "DIR")]
+    pub recorded: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Args)]
@@ -396,17 +403,17 @@ impl RunArgs {
     pub fn defining(&self) -> Vec<String> {
         let mut words = vec!["--suite".to_owned(), self.suite.clone()];
         let mut option = |name: &str, value: Option<String>| words.extend(value.into_iter().flat_map(|value| [name.to_owned(), value]));
-        option("--seed", self.seed.map(|seed| seed.to_string()));
-        option("--size", self.size.map(|size| size.to_string()));
-        for external in &self.externals {
+        option("--seed", self.asked.seed.map(|seed| seed.to_string()));
+        option("--size", self.asked.size.map(|size| size.to_string()));
+        for external in &self.asked.externals {
             option("--engine", Some(external.to_string()));
         }
-        option("--filter", self.filter.clone());
-        option("--recorded", self.recorded.as_ref().map(|path| path.to_string_lossy().into_owned()));
+        option("--filter", self.asked.filter.clone());
+        option("--recorded", self.asked.recorded.as_ref().map(|path| path.to_string_lossy().into_owned()));
         let usual = Self::default_suite();
         option("--timeout", (self.timeout != usual.timeout).then(|| self.timeout.to_string()));
         option("--memory", (self.memory != usual.memory).then(|| self.memory.to_string()));
-        let flags = [("--live", self.live), ("--no-timing", self.no_timing)];
+        let flags = [("--live", self.asked.live), ("--no-timing", self.asked.no_timing)];
         words.extend(flags.into_iter().filter(|(_, given)| *given).map(|(name, _)| name.to_owned()));
         words
     }
@@ -432,7 +439,7 @@ mod tests {
         let whole = RunArgs::of(&RunArgs::of(&part).unwrap().defining()).unwrap();
         assert_eq!(format!("{whole:?}"), format!("{:?}", RunArgs::of(&all).unwrap()));
         assert_eq!(RunArgs::default_suite().defining(), ["--suite", "default"]);
-        let size = |command: &str| RunArgs::of_command(command).map(|run| (run.suite, run.size.map(NonZeroUsize::get)));
+        let size = |command: &str| RunArgs::of_command(command).map(|run| (run.suite, run.asked.size.map(NonZeroUsize::get)));
         assert_eq!(size("cargo run --release"), Some(("default".into(), None)));
         assert_eq!(size("cargo run --release -- run --suite sweep --size 7"), Some(("sweep".into(), Some(7))));
         assert_eq!([size("cargo run --release -- compare a.urdf"), size("cargo run --release -- run --suite 'a")], [None, None]);

@@ -1,7 +1,6 @@
 //! The command line: runs in shards, and rows for programs that load many.
 
-use super::RunArgs;
-use crate::oracles::external::External;
+use super::{AskedArgs, RunArgs};
 use clap::Args;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -29,27 +28,8 @@ pub struct WholeArgs {
     /// The suite: a name in datasets/suites, or a TOML file.
     #[arg(default_value = "default")]
     pub suite: String,
-    /// Ask the engines themselves instead of their recorded answers.
-    #[arg(long)]
-    pub live: bool,
-    /// The seed of the states, instead of the suite's.
-    #[arg(long, requires = "live")]
-    pub seed: Option<u64>,
-    /// The number of robots that the suite draws, as in `run`.
-    #[arg(long, value_name = "N")]
-    pub size: Option<NonZeroUsize>,
-    /// An engine of one's own, as in `run`; may be repeated.
-    #[arg(long = "engine", value_name = "NAME=PROGRAM")]
-    pub externals: Vec<External>,
-    /// Only cells whose path study/robot/engine/quantity/method matches this regular expression.
-    #[arg(long, value_name = "REGEX")]
-    pub filter: Option<String>,
-    /// Leave the timing study out.
-    #[arg(long)]
-    pub no_timing: bool,
-    /// Where recorded answers are read from; by default datasets/recorded.
-    #[arg(long, value_name = "DIR")]
-    pub recorded: Option<PathBuf>,
+    #[command(flatten)]
+    pub asked: AskedArgs,
     /// An earlier run or shard whose times the costs are taken from; may be repeated.
     #[arg(long, value_name = "DIR")]
     pub costs: Vec<PathBuf>,
@@ -60,13 +40,7 @@ impl WholeArgs {
     pub fn run(&self) -> RunArgs {
         RunArgs {
             suite: self.suite.clone(),
-            live: self.live,
-            seed: self.seed,
-            size: self.size,
-            externals: self.externals.clone(),
-            filter: self.filter.clone(),
-            no_timing: self.no_timing,
-            recorded: self.recorded.clone(),
+            asked: self.asked.clone(),
             costs: self.costs.clone(),
             ..RunArgs::default_suite()
         }

@@ -50,9 +50,9 @@ impl<'a> Asked<'a> {
             engines: loaded.suite.engines(),
             timed: of_studies(true),
             alone: of_studies(false),
-            externals: &args.externals,
-            live: args.live,
-            recorded: args.recorded.clone().unwrap_or_else(|| root.recorded()),
+            externals: &args.asked.externals,
+            live: args.asked.live,
+            recorded: args.asked.recorded.clone().unwrap_or_else(|| root.recorded()),
             robots: loaded.robots.iter().filter(answers).collect(),
             limits: limits(args),
         }

@@ -49,7 +49,7 @@ fn conditions(root: &Root, suite: &Suite, folder: &Path, info: &RunInfo, records
     let gates = root.read_gates()?.with_external(&externals.collect::<Vec<_>>()).with_robots(ranges::properties(folder, info)?)?;
     let mut conditions = gates.conditions(suite, records, true);
     // A command that is none of `run` is that of an older program.
-    if RunArgs::of_command(&info.command).is_none_or(|run| robots::is_own_size(suite, run.size)) {
+    if RunArgs::of_command(&info.command).is_none_or(|run| robots::is_own_size(suite, run.asked.size)) {
         conditions.extend(Counts::read(&root.counts())?.conditions(info, suite.engines(), records));
     }
     conditions.extend(info.expected.iter().filter(|condition| condition.kind == GateKind::Engine).cloned());

@@ -43,9 +43,9 @@ pub struct Prepared {
 /// Reads a suite with its robots and gates, and opens its engines.
 pub fn prepare(root: &Root, args: &RunArgs) -> Result<Prepared, Fail> {
     let start = Instant::now();
-    let filter = args.filter.as_deref().map(Regex::new).transpose();
+    let filter = args.asked.filter.as_deref().map(Regex::new).transpose();
     let filter = filter.map_err(|error| Fail::input(format!("--filter: {error}")))?;
-    let loaded = robots::load(root, &args.suite, args.live, args.seed, args.size)?;
+    let loaded = robots::load(root, &args.suite, args.asked.live, args.asked.seed, args.asked.size)?;
     let program = provenance::collect(root.path());
     let studies = studies(root, &loaded, args, &program.binary_hash)?;
     let gates = root.read_gates()?.with_external(&externals(args));
@@ -74,14 +74,14 @@ impl Prepared {
 
     /// Refuses a filter that leaves nothing.
     pub fn check_filter(&self, args: &RunArgs) -> Result<(), Fail> {
-        let Some((text, filter)) = args.filter.as_ref().zip(self.filter.as_ref()) else { return Ok(()) };
+        let Some((text, filter)) = args.asked.filter.as_ref().zip(self.filter.as_ref()) else { return Ok(()) };
         filter::check(text, filter, &self.loaded.name, &self.cells().iter().map(Cell::path).collect::<Vec<_>>())
     }
 
     /// What the rows of a run that starts now share.
     pub fn describe(&self, root: &Root, args: &RunArgs, started: SystemTime) -> Result<RunInfo, Fail> {
         let Loaded { name, hash, suite, robots, .. } = &self.loaded;
-        let about = About { suite: name, hash, seed: suite.seed, live: args.live, robots };
+        let about = About { suite: name, hash, seed: suite.seed, live: args.asked.live, robots };
         describe(root, self.program.clone(), &about, &self.opened, started)
     }
 
@@ -120,7 +120,7 @@ pub fn drawings(info: &RunInfo, rows: &[Row], robots: &[Robot]) -> BTreeMap<Stri
 
 /// The names of the engines that a user brings along.
 fn externals(args: &RunArgs) -> Vec<&str> {
-    args.externals.iter().map(|external: &External| external.name.as_str()).collect()
+    args.asked.externals.iter().map(|external: &External| external.name.as_str()).collect()
 }
 
 /// How the folder of a run is opened.
@@ -157,9 +157,9 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
 fn studies(root: &Root, loaded: &Loaded, args: &RunArgs, program: &str) -> Result<Vec<Box<dyn Study>>, Fail> {
     let reproduce = oracles::reproducer(root, engines::limits(args));
     let measure = oracles::measurer(root)?;
-    let setup = Setup { suite: &loaded.suite, live: args.live, program, reproduce, measure };
+    let setup = Setup { suite: &loaded.suite, live: args.asked.live, program, reproduce, measure };
     let mut studies = featherbench_registry::of_suite(&setup)?;
-    studies.retain(|study| !(args.no_timing && study.measures_time()));
+    studies.retain(|study| !(args.asked.no_timing && study.measures_time()));
     Ok(studies)
 }
 

@@ -4,36 +4,22 @@
 //! native oracles are required at night only, with `FEATHERBENCH_NIGHTLY` set.
 //! The tests do not use libtest: its captured output would hide the skips.
 
-#[path = "outside/adam.rs"]
 mod adam;
-#[path = "outside/added.rs"]
 mod added;
-#[path = "outside/clarabel.rs"]
 mod clarabel;
-#[path = "outside/compared.rs"]
 mod compared;
-#[path = "outside/compiled.rs"]
 mod compiled;
-#[path = "outside/counted.rs"]
 mod counted;
-#[path = "outside/dynibo.rs"]
 mod dynibo;
-#[path = "outside/factors.rs"]
 mod factors;
-#[path = "outside/hyperqueue.rs"]
 mod hyperqueue;
-#[path = "outside/lesson.rs"]
 mod lesson;
-#[path = "outside/library.rs"]
 mod library;
-#[path = "outside/native.rs"]
 mod native;
-#[path = "outside/parquet.rs"]
 mod parquet;
-#[path = "outside/rapier.rs"]
 mod rapier;
-#[path = "outside/reduced.rs"]
 mod reduced;
+#[path = "../support/mod.rs"]
 mod support;
 mod written;
 

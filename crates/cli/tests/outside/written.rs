@@ -5,32 +5,21 @@ use crate::{Outcome, Unpassed};
 use featherbench_bench::measure::worst;
 use featherbench_formats::{ExportError, OnLoss, mjcf, neutral, urdf};
 use featherbench_model::{Description, JointType};
-use featherbench_protocol::{Block, Message};
+use featherbench_protocol::{Block, Limits, Message, Process};
 use serde_json::{Value, json};
-use std::io::BufReader;
 use std::path::Path;
-use std::process::{Child, ChildStdout, Command, Stdio};
 
 /// An oracle to which the test writes messages itself.
-struct Oracle {
-    process: Child,
-    output: BufReader<ChildStdout>,
-}
+struct Oracle(Process);
 
 impl Oracle {
     fn start(python: &Path, engine: &str) -> Self {
-        let words = crate::oracle_command(python, engine);
-        let mut command = Command::new(&words[0]);
-        command.args(&words[1..]).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
-        let mut process = command.spawn().unwrap();
-        let output = BufReader::new(process.stdout.take().unwrap());
-        Self { process, output }
+        Self(Process::start(&crate::oracle_command(python, engine), Limits::default()).unwrap())
     }
 
     /// The answer, or the reason why there is none.
     fn ask(&mut self, question: Value, blocks: Vec<Block>) -> Result<Message, String> {
-        Message::new(question, blocks).write(self.process.stdin.as_mut().unwrap()).unwrap();
-        let answer = Message::read(&mut self.output).unwrap().expect("an answer");
+        let answer = self.0.ask(&Message::new(question, blocks)).unwrap();
         if answer.text("status") == "ok" { Ok(answer) } else { Err(answer.text("reason").to_owned()) }
     }
 
@@ -58,14 +47,6 @@ impl Oracle {
             let answer = self.ask(question, Vec::new()).unwrap_or_else(|reason| panic!("{}: {quantity}: {reason}", robot.name));
             answer.block("value").unwrap().data.clone()
         })
-    }
-}
-
-impl Drop for Oracle {
-    fn drop(&mut self) {
-        // The process exits when its input ends.
-        drop(self.process.stdin.take());
-        let _ = self.process.wait();
     }
 }
 
