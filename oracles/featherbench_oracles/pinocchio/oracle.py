@@ -28,6 +28,13 @@ from featherbench_oracles.pinocchio.coordinates import (
 from featherbench_oracles.pinocchio.loops import LOOPS
 
 
+def from_upper(matrix: Array) -> Array:
+    """Make a symmetric matrix of the upper triangle of one."""
+    upper = np.triu(matrix)
+    whole: Array = upper + np.triu(upper, 1).T
+    return whole
+
+
 class PinocchioRobot:
     """A robot in Pinocchio. Every method that takes a question answers one quantity at its state, as `protocol.Engine` says.
 
@@ -92,8 +99,7 @@ class PinocchioRobot:
 
     def _mass_e(self, q: Array, convention: pin.Convention) -> Array:
         """Compute M_e. crba promises the upper triangle only."""
-        upper = np.triu(pin.crba(self.model, self.data, q, convention))
-        return upper + np.triu(upper, 1).T
+        return from_upper(pin.crba(self.model, self.data, q, convention))
 
     def crba_local(self, ask: State) -> Array:
         """Answer `mass_matrix` by the composite rigid body algorithm in body frames."""
@@ -153,8 +159,7 @@ class PinocchioRobot:
         """Differentiate tau_e by q_e, v_e and a_e. The Python function fills both triangles of the last."""
         q, v, way = self._differentiated(ask)
         by_q, by_v, mass = pin.computeRNEADerivatives(self.model, self.data, q, v, way.change.to_engine_a(ask.a))
-        upper = np.triu(mass)
-        return way, by_q.copy(), by_v.copy(), upper + np.triu(upper, 1).T
+        return way, by_q.copy(), by_v.copy(), from_upper(mass)
 
     def rnea_dq(self, ask: State) -> Array:
         """Answer `id_dq` by computeRNEADerivatives."""
@@ -170,8 +175,7 @@ class PinocchioRobot:
         """Differentiate a_e by q_e, v_e and tau_e."""
         q, v, way = self._differentiated(ask)
         by_q, by_v, inverse = pin.computeABADerivatives(self.model, self.data, q, v, way.change.to_engine_tau(ask.tau))
-        upper = np.triu(inverse)
-        return way, by_q.copy(), by_v.copy(), upper + np.triu(upper, 1).T
+        return way, by_q.copy(), by_v.copy(), from_upper(inverse)
 
     def aba_dq(self, ask: State) -> Array:
         """Answer `fd_dq` by computeABADerivatives."""

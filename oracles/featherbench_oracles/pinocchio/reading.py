@@ -111,12 +111,17 @@ def _link(model: pin.Model, i: int, path: Path) -> Link:
     return Link(_carried(model, i), inertia.mass, com.translation, axes.T @ inertia.inertia @ axes, parent, place, joints)
 
 
+def _own(joint: pin.JointModel) -> Any:
+    """Find the joint in its own class, where Pinocchio wraps it in a general one."""
+    return joint.extract() if hasattr(joint, "extract") else joint
+
+
 def _parts(joint: pin.JointModel) -> Iterator[tuple[pin.JointModel, Place]]:
     """List the parts of a joint, each with its placement in the one before."""
     if joint.shortname() != "JointModelComposite":
         yield joint, Place()
         return
-    whole = joint.extract() if hasattr(joint, "extract") else joint
+    whole = _own(joint)
     for part, placement in zip(whole.joints, whole.jointPlacements, strict=True):
         yield part, _place(placement)
 
@@ -153,7 +158,7 @@ def _type(joint: pin.JointModel, name: str) -> tuple[str, Array | None, float]:
     short = joint.shortname().removeprefix("JointModel")
     if short in WHOLE:
         return WHOLE[short], None, 0.0
-    whole = joint.extract() if hasattr(joint, "extract") else joint
+    whole = _own(joint)
     for prefix, kind in KINDS.items():
         letter = short.removeprefix(prefix).removeprefix("UB")
         if short.startswith(prefix) and letter in "XYZ" and len(letter) == 1:
