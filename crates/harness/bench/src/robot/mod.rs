@@ -7,7 +7,6 @@ pub(crate) mod import;
 pub(crate) mod properties;
 pub(crate) mod relocation;
 
-use crate::measure::Magnitudes;
 use crate::{Import, RobotFile};
 use featherbench_model::{Description, Malformed, Model, Warning};
 use featherbench_results::ModelOrigin;
@@ -177,11 +176,6 @@ impl Robot {
     pub fn base(&self) -> &'static str {
         let floats = self.description.bodies.first().is_some_and(|body| body.joint.kind == featherbench_model::JointType::Free);
         if floats { "free" } else { "fixed" }
-    }
-
-    /// The magnitudes at each state.
-    pub fn magnitudes(&self) -> Vec<Magnitudes> {
-        (0..self.states.count()).map(|k| Magnitudes::new(self, k)).collect()
     }
 
     /// The read-back of an exact engine, in the layout of [`Quantity::Readback`](crate::Quantity::Readback).
