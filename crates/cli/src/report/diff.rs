@@ -145,7 +145,7 @@ fn summary(before: &RunInfo, after: &RunInfo, found: &Diff) -> String {
 /// The first rows of each kind of change, and how many more there are of each.
 fn listing(found: &Diff) -> (Vec<[String; 8]>, Vec<String>) {
     let (mut rows, mut more) = (Vec::new(), Vec::new());
-    for change in Change::ALL {
+    for &change in Change::ALL {
         let mut of_kind = found.changes.iter().filter(|changed| changed.change == change);
         rows.extend(of_kind.by_ref().take(LISTED).map(columns));
         let rest = of_kind.count();

@@ -8,7 +8,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::findings::{Findings, Found};
 use crate::labels;
-use crate::numbers::{count, grouped, short};
+use crate::numbers::{capitalised, count, grouped, short};
 use crate::sheet::sheet;
 
 /// The style of such a page, beside the sheet of every page.
@@ -112,7 +112,7 @@ pub(crate) fn comparison(before: Side, after: Side) -> Markup {
     let apart = Apart::of(before.info, after.info, &mut changed);
     html! {
         p.lead { "Against the run of " (before.info.started) ": " (summary(&appeared, &vanished, &changed)) "." }
-        @if let Some(apart) = apart { p.warning { (capital(&apart.sentence())) "." } }
+        @if let Some(apart) = apart { p.warning { (capitalised(&apart.sentence())) "." } }
         @if before.info.host.cpu != after.info.host.cpu { p.warning { "The runs are of two machines: their times compare the machines." } }
         @for words in versions(before.info, after.info) { p { (words) } }
         (list("Findings that appeared", "fail", &appeared))
@@ -121,14 +121,9 @@ pub(crate) fn comparison(before: Side, after: Side) -> Markup {
     }
 }
 
-fn capital(text: &str) -> String {
-    let mut chars = text.chars();
-    chars.next().map_or_else(String::new, |first| first.to_uppercase().chain(chars).collect())
-}
-
 /// Counts of everything that changed.
 fn summary(appeared: &[&Found], vanished: &[&Found], changed: &Diff) -> String {
-    let kinds = Change::ALL.into_iter().filter_map(|kind| {
+    let kinds = Change::ALL.iter().filter_map(|&kind| {
         let number = changed.changes.iter().filter(|changed| changed.change == kind).count();
         (number > 0).then(|| format!("{} {}", grouped(number), kind.as_str()))
     });
@@ -175,7 +170,7 @@ fn rows(changed: &Diff) -> Markup {
                         th.number scope="col" { "before" } th.number scope="col" { "after" } th.number scope="col" { "factor" }
                     } }
                     tbody {
-                        @for kind in Change::ALL {
+                        @for &kind in Change::ALL {
                             @for changed in changed.changes.iter().filter(|changed| changed.change == kind).take(LISTED) {
                                 @if let Some(row) = changed.after.or(changed.before) {
                                     tr {

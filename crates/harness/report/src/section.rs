@@ -14,7 +14,7 @@ use crate::figure::Figure;
 /// let section = Section { lines: vec!["mine: answered".into()], ..Section::new("mine", "Mine", body) };
 /// assert!(!section.appendix && section.script.is_empty());
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Section {
     /// The `id` of its element, by which the navigation finds it.
     pub anchor: &'static str,
@@ -107,25 +107,7 @@ pub struct Finding {
 impl Section {
     /// A section that adds nothing elsewhere.
     pub fn new(anchor: &'static str, name: &'static str, body: Markup) -> Self {
-        Self {
-            anchor,
-            name,
-            study: "",
-            body,
-            data: None,
-            script: "",
-            style: "",
-            finding: None,
-            answer: None,
-            parts: Vec::new(),
-            marks: Vec::new(),
-            figures: Vec::new(),
-            shows: Vec::new(),
-            quantities: Vec::new(),
-            terms: &[],
-            lines: Vec::new(),
-            appendix: false,
-        }
+        Self { anchor, name, body, ..Self::default() }
     }
 
     /// The section with data for its script. If the data cannot be written as JSON, writing the report fails with that error.

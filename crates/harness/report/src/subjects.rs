@@ -77,23 +77,8 @@ impl<'a> Subjects<'a> {
     fn engine(&self, index: usize) -> Subject {
         let (name, rows) = (self.overview.engines[index], &self.engines[index]);
         let info = self.run.engines.iter().find(|engine| engine.name == name);
-        let quantities = quantities(rows);
-        let mut map = Map {
-            id: "map".into(),
-            label: format!("Margin to the gate by robot and quantity: {name}"),
-            axes: ["robot", "quantity"],
-            filters: vec![("engine", name.to_owned())],
-            lines: robot_heads(self.overview),
-            columns: quantities.iter().map(|&quantity| quantity_head(quantity)).collect(),
-            cells: BTreeMap::new(),
-            named: false,
-        };
-        for &row in rows {
-            let quantity = quantities.iter().position(|&other| other == row.quantity);
-            if let (Some(line), Some(column)) = (self.overview.robot(&row.robot), quantity) {
-                map.add((line, column), row);
-            }
-        }
+        let filters = vec![("engine", name.to_owned())];
+        let map = self.map(["robot", "quantity"], name, filters, None, rows);
         let about = About { before: html! { @if let Some(info) = info { (version(info)) } }, after: html! {} };
         let findings = Findings::about(self.run, rows.iter().copied(), |culprit: &Culprit| culprit.engine == name);
         self.page(&self.overview.pages.engines[index], "Engine", name, &findings, &about, &map)
@@ -102,24 +87,8 @@ impl<'a> Subjects<'a> {
     fn robot(&self, index: usize) -> Subject {
         let (about, rows) = (&self.overview.robots[index], &self.robots[index]);
         let info = self.run.robots.iter().find(|robot| robot.name == about.name);
-        let quantities = quantities(rows);
         let chunk = robot_chunk(index);
-        let mut map = Map {
-            id: "map".into(),
-            label: format!("Margin to the gate by quantity and engine: {}", about.name),
-            axes: ["quantity", "engine"],
-            filters: Vec::new(),
-            lines: quantities.iter().map(|&quantity| Head { chunk: Some(chunk.clone()), ..quantity_head(quantity) }).collect(),
-            columns: engine_heads(self.overview),
-            cells: BTreeMap::new(),
-            named: false,
-        };
-        for &row in rows {
-            let quantity = quantities.iter().position(|&other| other == row.quantity);
-            if let (Some(line), Some(column)) = (quantity, self.overview.engine(&row.engine)) {
-                map.add((line, column), row);
-            }
-        }
+        let map = self.map(["quantity", "engine"], about.name, Vec::new(), Some(&chunk), rows);
         let number = |value: Option<u64>| value.map_or_else(|| "?".to_owned(), |value| value.to_string());
         let words = html! {
             p.lead {
@@ -138,24 +107,9 @@ impl<'a> Subjects<'a> {
         let (name, rows) = (self.overview.studies[index], &self.studies[index]);
         // A study without robots has a line for each of its quantities.
         let of_robots = rows.iter().any(|row| !row.robot.is_empty());
-        let quantities = quantities(rows);
-        let own = |quantity: &&str| Head { chunk: Some(format!("study-{index}")), ..quantity_head(quantity) };
-        let mut map = Map {
-            id: "map".into(),
-            label: format!("Margin to the gate by {} and engine: {name}", if of_robots { "robot" } else { "quantity" }),
-            axes: if of_robots { ["robot", "engine"] } else { ["quantity", "engine"] },
-            filters: vec![("study", name.to_owned())],
-            lines: if of_robots { robot_heads(self.overview) } else { quantities.iter().map(own).collect() },
-            columns: engine_heads(self.overview),
-            cells: BTreeMap::new(),
-            named: of_robots,
-        };
-        for &row in rows {
-            let line = if of_robots { self.overview.robot(&row.robot) } else { quantities.iter().position(|&other| other == row.quantity) };
-            if let (Some(line), Some(column)) = (line, self.overview.engine(&row.engine)) {
-                map.add((line, column), row);
-            }
-        }
+        let filters = vec![("study", name.to_owned())];
+        let map = self.map([if of_robots { "robot" } else { "quantity" }, "engine"], name, filters, Some(&format!("study-{index}")), rows);
+        let map = Map { named: of_robots, ..map };
         let shown: Vec<&Section> = self.sections.iter().filter(|section| section.study == name).collect();
         let words = html! {
             @if !shown.is_empty() {
@@ -172,6 +126,37 @@ impl<'a> Subjects<'a> {
         };
         let findings = Findings::about(self.run, rows.iter().copied(), |culprit: &Culprit| culprit.study == name);
         self.page(&self.overview.pages.studies[index], "Study", name, &findings, &About { before: html! {}, after: words }, &map)
+    }
+
+    /// The map of a page's rows. Lines of quantities have their rows in `chunk`.
+    fn map(
+        &self,
+        axes: [&'static str; 2],
+        name: &str,
+        filters: Vec<(&'static str, String)>,
+        chunk: Option<&str>,
+        rows: &[&'a Row],
+    ) -> Map<'a> {
+        let quantities = quantities(rows);
+        let of_quantity = |&quantity: &&str| Head { chunk: chunk.map(str::to_owned), ..quantity_head(quantity) };
+        let [lines, columns] = axes.map(|axis| match axis {
+            "robot" => robot_heads(self.overview),
+            "engine" => engine_heads(self.overview),
+            _ => quantities.iter().map(of_quantity).collect(),
+        });
+        let label = format!("Margin to the gate by {} and {}: {name}", axes[0], axes[1]);
+        let mut map = Map { id: "map".into(), label, axes, filters, lines, columns, cells: BTreeMap::new(), named: false };
+        for &row in rows {
+            let places = axes.map(|axis| match axis {
+                "robot" => self.overview.robot(&row.robot),
+                "engine" => self.overview.engine(&row.engine),
+                _ => quantities.iter().position(|&quantity| quantity == row.quantity),
+            });
+            if let [Some(line), Some(column)] = places {
+                map.add((line, column), row);
+            }
+        }
+        map
     }
 
     /// The one template.

@@ -8,7 +8,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::ResultsError;
-use crate::file::{atomic_write, read_bytes};
+use crate::disk::{atomic_write, read_bytes};
 
 /// Name of the file of checksums in a folder.
 pub const CHECKSUMS_NAME: &str = "checksums.txt";

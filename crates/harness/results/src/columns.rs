@@ -1,6 +1,11 @@
-//! The one table of columns: the header, the schema and the documentation of a row are made from it.
+//! The one table of columns: the header, the schema and a row's fields with their documentation are made from it.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+
+use crate::{Kind, Relation, Verdict};
+
+/// Name of the rows' file in a run's folder.
+pub const CSV_NAME: &str = "rows.csv";
 
 /// The type of a column's text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -34,69 +39,112 @@ pub struct Column {
     pub description: &'static str,
 }
 
-const fn text(name: &'static str, description: &'static str) -> Column {
-    Column { name, kind: ColumnType::Text, unit: "", words: &[], description }
+/// A type of fields: how their texts are read.
+trait Field {
+    const KIND: ColumnType;
+    const WORDS: &'static [&'static str] = &[];
 }
 
-const fn integer(name: &'static str, unit: &'static str, description: &'static str) -> Column {
-    Column { name, kind: ColumnType::Integer, unit, words: &[], description }
+impl Field for String {
+    const KIND: ColumnType = ColumnType::Text;
 }
 
-const fn float(name: &'static str, unit: &'static str, description: &'static str) -> Column {
-    Column { name, kind: ColumnType::Float, unit, words: &[], description }
+impl Field for Option<u64> {
+    const KIND: ColumnType = ColumnType::Integer;
 }
 
-const fn word(name: &'static str, words: &'static [&'static str], description: &'static str) -> Column {
-    Column { name, kind: ColumnType::Word, unit: "", words, description }
+impl Field for Option<f64> {
+    const KIND: ColumnType = ColumnType::Float;
 }
 
-const fn flag(name: &'static str, description: &'static str) -> Column {
-    Column { name, kind: ColumnType::Flag, unit: "", words: &["true", "false"], description }
+impl Field for bool {
+    const KIND: ColumnType = ColumnType::Flag;
 }
 
-/// The columns of `rows.csv` in their order; [`Row`](crate::Row) has a field for each, in the same order.
-pub const COLUMNS: [Column; 33] = [
-    text("run", "id of the run that produced the row"),
-    text("cell", "content hash of the unit of work that the row belongs to"),
-    text("study", "the question asked: agreement, timing, operations, …"),
-    text("family", "family of the robot: chain, tree, humanoid, …"),
-    text("robot", "name of the robot; empty where a study has none"),
-    integer("nq", "coordinates", "length of the configuration vector"),
-    integer("nv", "degrees of freedom", "length of the velocity vector"),
-    integer("bodies", "bodies", "moving bodies of the robot"),
-    integer("depth", "joints", "joints on the longest path from the base to a leaf"),
-    text("engine", "the engine that answered: featherbench (our kernels), pinocchio, mujoco, drake, …"),
-    text("engine_version", "the version that the engine itself reports"),
-    text("method", "the engine's way to the quantity, where it offers several"),
-    text("precision", "arithmetic of the answer: f64, f32, …"),
-    text("quantity", "what was computed or timed: id, mass_matrix, fd, …"),
-    text("states", "kind of input states: random, zero, straight, fast, limit, all; empty where there are none"),
-    text("body", "the body that the row is about; empty where it is the whole robot"),
-    text("cache", "over what a time was taken: stream (many states in turn), hot (one state again and again); empty for the rest"),
-    text("metric", "measure of the value: scaled, forward, backward, kappa, pairwise, ns_per_call, …"),
-    word("kind", &["exact", "measured"], "exact: the same bits on every run; measured: taken on a machine"),
-    float("value", "unit", "the result; empty when there is none or it was not finite"),
-    float("ci_low", "unit", "lower end of the confidence interval of a measured value, where it has one"),
-    float("ci_high", "unit", "upper end of that interval"),
-    text("unit", "unit of value, interval, bound and floor; `ratio` for a pure ratio"),
-    text("reference", "with what the value was compared: an engine, a closed form, a data set"),
-    word("relation", &["le", "ge", "eq", "within"], "how value must stand to bound; empty when nothing is judged; within: |value| ≤ bound"),
-    float("bound", "unit", "the gate"),
-    float("floor", "unit", "least error that the rounding of the inputs makes unavoidable, where it is known"),
-    float(
-        "margin",
-        "decades",
-        "distance to the gate, positive inside: log10(bound/|value|) for le and within, log10(value/bound) for ge, empty for eq; clamped to ±16",
-    ),
-    word("verdict", &["pass", "fail", "info", "skip", "error", "deviation"], "what became of the row"),
-    flag("valid", "whether the value counts: false for a measurement that its control or a check rejects"),
-    flag("estimated", "whether the value is an estimate: the cost of calling the engine was measured with it and subtracted"),
-    text("reason", "why the verdict is not pass, or the value not valid; for people; empty otherwise"),
-    text(
-        "params",
-        "what a study adds, as canonical JSON: keys sorted, no spaces; `deviation` is the id of the known deviation that explains the row",
-    ),
-];
+impl Field for Kind {
+    const KIND: ColumnType = ColumnType::Word;
+    const WORDS: &'static [&'static str] = Self::WORDS;
+}
+
+impl Field for Option<Relation> {
+    const KIND: ColumnType = ColumnType::Word;
+    const WORDS: &'static [&'static str] = Relation::WORDS;
+}
+
+impl Field for Verdict {
+    const KIND: ColumnType = ColumnType::Word;
+    const WORDS: &'static [&'static str] = Self::WORDS;
+}
+
+/// Makes [`Row`] and [`COLUMNS`]: of each column its name, its type, the field of an empty row if it is not the type's own default, the unit
+/// of numbers, and what it means.
+macro_rules! columns {
+    ($($name:ident: $type:ty $(= $empty:expr)? $(, [$unit:literal])?, $description:literal;)+) => {
+        /// One result: a field for each of [`COLUMNS`], in the same order.
+        ///
+        /// Set the fields that identify the row with a struct literal over [`Row::default`]. Then close it with one of
+        /// [`gated`](Self::gated), [`informed`](Self::informed) and [`without_value`](Self::without_value). They keep value, margin, verdict
+        /// and reason consistent.
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+        pub struct Row {
+            $(#[doc = $description] pub $name: $type),+
+        }
+
+        impl Default for Row {
+            /// An empty, exact, unjudged row with the parameters `{}`.
+            fn default() -> Self {
+                Self { $($name: columns!(@empty $($empty)?)),+ }
+            }
+        }
+
+        /// The columns of `rows.csv` in their order.
+        pub const COLUMNS: [Column; [$(stringify!($name)),+].len()] = [$(Column {
+            name: stringify!($name),
+            kind: <$type as Field>::KIND,
+            unit: concat!($($unit)?),
+            words: <$type as Field>::WORDS,
+            description: $description,
+        }),+];
+    };
+    (@empty) => { Default::default() };
+    (@empty $empty:expr) => { $empty };
+}
+
+columns! {
+    run: String, "id of the run that produced the row";
+    cell: String, "content hash of the unit of work that the row belongs to";
+    study: String, "the question asked: agreement, timing, operations, …";
+    family: String, "family of the robot: chain, tree, humanoid, …";
+    robot: String, "name of the robot; empty where a study has none";
+    nq: Option<u64>, ["coordinates"], "length of the configuration vector";
+    nv: Option<u64>, ["degrees of freedom"], "length of the velocity vector";
+    bodies: Option<u64>, ["bodies"], "moving bodies of the robot";
+    depth: Option<u64>, ["joints"], "joints on the longest path from the base to a leaf";
+    engine: String, "the engine that answered: featherbench (our kernels), pinocchio, mujoco, drake, …";
+    engine_version: String, "the version that the engine itself reports";
+    method: String, "the engine's way to the quantity, where it offers several";
+    precision: String, "arithmetic of the answer: f64, f32, …";
+    quantity: String, "what was computed or timed: id, mass_matrix, fd, …";
+    states: String, "kind of input states: random, zero, straight, fast, limit, all; empty where there are none";
+    body: String, "the body that the row is about; empty where it is the whole robot";
+    cache: String, "over what a time was taken: stream (many states in turn), hot (one state again and again); empty for the rest";
+    metric: String, "measure of the value: scaled, forward, backward, kappa, pairwise, ns_per_call, …";
+    kind: Kind = Kind::Exact, "exact: the same bits on every run; measured: taken on a machine";
+    value: Option<f64>, ["unit"], "the result; empty when there is none or it was not finite";
+    ci_low: Option<f64>, ["unit"], "lower end of the confidence interval of a measured value, where it has one";
+    ci_high: Option<f64>, ["unit"], "upper end of that interval";
+    unit: String, "unit of value, interval, bound and floor; `ratio` for a pure ratio";
+    reference: String, "with what the value was compared: an engine, a closed form, a data set";
+    relation: Option<Relation>, "how value must stand to bound; empty when nothing is judged; within: |value| ≤ bound";
+    bound: Option<f64>, ["unit"], "the gate";
+    floor: Option<f64>, ["unit"], "least error that the rounding of the inputs makes unavoidable, where it is known";
+    margin: Option<f64>, ["decades"], "distance to the gate, positive inside: log10(bound/|value|) for le and within, log10(value/bound) for ge, empty for eq; clamped to ±16";
+    verdict: Verdict = Verdict::Info, "what became of the row";
+    valid: bool = true, "whether the value counts: false for a measurement that its control or a check rejects";
+    estimated: bool, "whether the value is an estimate: the cost of calling the engine was measured with it and subtracted";
+    reason: String, "why the verdict is not pass, or the value not valid; for people; empty otherwise";
+    params: String = "{}".into(), "what a study adds, as canonical JSON: keys sorted, no spaces; `deviation` is the id of the known deviation that explains the row";
+}
 
 /// The text of `schema.json`: format, every column with type, unit, words and meaning, and the meaning of the names in rows.
 pub fn schema_json(dictionary: &crate::Dictionary) -> String {
@@ -108,7 +156,7 @@ pub fn schema_json(dictionary: &crate::Dictionary) -> String {
         #[serde(flatten)]
         dictionary: &'a crate::Dictionary,
     }
-    let schema = Schema { format: crate::RUN_FORMAT, file: crate::CSV_NAME, columns: &COLUMNS, dictionary };
+    let schema = Schema { format: crate::RUN_FORMAT, file: CSV_NAME, columns: &COLUMNS, dictionary };
     let mut text = serde_json::to_string_pretty(&schema).unwrap_or_default();
     text.push('\n');
     text

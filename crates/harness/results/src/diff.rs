@@ -1,6 +1,8 @@
 //! The changes between two runs beyond noise: a pure function of their rows.
 
+use crate::names::words;
 use crate::{Kind, Relation, Row};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// An error has changed if it is this many times larger or smaller: rounding in another order of operations causes less.
@@ -10,37 +12,21 @@ pub const ERROR_FLOOR: f64 = 8.9e-16;
 /// Two times differ if their ratio is beyond this, or beyond the A/A ratios of their experiments if those are wider.
 pub const TIME_NOISE: f64 = 0.02;
 
-/// The kind of a change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Change {
-    /// The verdict differs.
-    Verdict,
-    /// The value, a count, differs.
-    Count,
-    /// The error changed by more than [`ERROR_FACTOR`].
-    Error,
-    /// Its time: the intervals of the two runs are apart, and their ratio is beyond the noise.
-    Time,
-    /// It is in the first run only.
-    Gone,
-    /// It is in the second run only.
-    New,
-}
-
-impl Change {
-    /// All of them, in the order of a listing.
-    pub const ALL: [Self; 6] = [Self::Verdict, Self::Count, Self::Error, Self::Time, Self::Gone, Self::New];
-
-    /// The word for it.
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Verdict => "verdict",
-            Self::Count => "count",
-            Self::Error => "error",
-            Self::Time => "time",
-            Self::Gone => "gone",
-            Self::New => "new",
-        }
+words! {
+    /// The kind of a change, in the order of a listing.
+    Change {
+        /// The verdict differs.
+        Verdict = "verdict",
+        /// The value, a count, differs.
+        Count = "count",
+        /// The error changed by more than [`ERROR_FACTOR`].
+        Error = "error",
+        /// Its time: the intervals of the two runs are apart, and their ratio is beyond the noise.
+        Time = "time",
+        /// It is in the first run only.
+        Gone = "gone",
+        /// It is in the second run only.
+        New = "new",
     }
 }
 

@@ -19,6 +19,7 @@ mod checksum;
 mod columns;
 mod dictionary;
 mod diff;
+mod disk;
 mod drawing;
 mod error;
 mod file;
@@ -34,20 +35,18 @@ mod trend;
 
 pub use apart::Apart;
 pub use checksum::{CHECKSUMS_NAME, Checksums, checksum, checksum_of, seal, unsealed};
-pub use columns::{COLUMNS, Column, ColumnType, schema_json};
+pub use columns::{COLUMNS, CSV_NAME, Column, ColumnType, Row, schema_json};
 pub use dictionary::{Dictionary, Named, Term};
 pub use diff::{Change, Changed, Diff, ERROR_FACTOR, ERROR_FLOOR, TIME_NOISE, diff};
+pub use disk::{atomic_write, atomic_write_with, quick_write};
 pub use drawing::{DRAWINGS_NAME, Drawing, DrawnBody, drawings_to_text, parse_drawings};
 pub use error::ResultsError;
-pub use file::{
-    CSV_NAME, RATIO, RUN_NAME, SCHEMA_NAME, atomic_write, atomic_write_with, parse_csv, quick_write, read_csv, read_run, to_csv, write_csv,
-    write_run, write_run_with,
-};
+pub use file::{RUN_NAME, SCHEMA_NAME, parse_csv, read_csv, read_run, to_csv, write_csv, write_run, write_run_with};
 pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;
 pub use properties::{Base, Feature, Properties};
 pub use quantity::{Asked, Extent, Extents, Measure, Quantity};
-pub use row::{MARGIN_LIMIT, Row};
+pub use row::{MARGIN_LIMIT, RATIO};
 pub use run_info::{
     Convention, Culprit, EngineInfo, EngineSource, Expectation, GateKind, GitInfo, Host, ModelOrigin, RUN_FORMAT, RobotInfo, RunInfo,
     ShardInfo,

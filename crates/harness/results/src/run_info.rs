@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::file::{atomic_write, read_text};
+use crate::disk::{atomic_write, read_text};
 use crate::names::words;
 use crate::{Properties, ResultsError, Row, Verdict};
 

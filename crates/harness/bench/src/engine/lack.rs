@@ -1,7 +1,6 @@
 //! What an engine does not offer: its rows are skips with a known cause, and no deviations.
 
 use crate::RobotClass;
-use crate::gates::deviation::among;
 use featherbench_results::{Properties, Row, Verdict};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -62,4 +61,9 @@ impl Lack {
             && among(&self.states, &row.states)
             && self.class.holds(&row.robot, properties)
     }
+}
+
+/// Whether a name is in a list; no list stands for all names.
+pub(crate) fn among(names: &Option<Vec<String>>, name: &String) -> bool {
+    names.as_ref().is_none_or(|names| names.contains(name))
 }

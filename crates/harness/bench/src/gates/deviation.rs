@@ -1,5 +1,6 @@
 //! Known deviations of one engine, as data: answers that miss their gate for a known cause, and reproductions that show a deviation alone.
 
+use crate::engine::lack::among;
 use crate::{HarnessError, RangeKey, RobotClass};
 use featherbench_results::{Properties, Row, Verdict};
 use serde::Deserialize;
@@ -8,8 +9,6 @@ use std::path::{Path, PathBuf};
 
 /// Seeds over which the size of a deviation is measured.
 pub const SEEDS: u64 = 20;
-/// The largest factor between a value and its range. Another draw, or another processor's rounding, causes little more.
-pub const SLACK: f64 = 2.0;
 /// What a deviation without a reproduction says in the place of its name.
 const NOT_REPRODUCED: &str = "not reproduced";
 
@@ -201,9 +200,4 @@ impl Deviation {
     pub(crate) fn error(&self, message: &str) -> HarnessError {
         HarnessError::Config { path: self.file.clone(), message: format!("deviation '{}': {message}", self.id) }
     }
-}
-
-/// Whether a name is in a list; no list stands for all names.
-pub(crate) fn among(names: &Option<Vec<String>>, name: &String) -> bool {
-    names.as_ref().is_none_or(|names| names.contains(name))
 }

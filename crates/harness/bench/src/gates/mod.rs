@@ -4,6 +4,7 @@ pub(crate) mod counts;
 pub(crate) mod deviation;
 pub(crate) mod known;
 pub(crate) mod means;
+pub(crate) mod meter;
 pub(crate) mod ranges;
 
 use crate::gates::known::Known;

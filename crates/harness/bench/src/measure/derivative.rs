@@ -4,7 +4,8 @@
 //! D = diag M, the entries of D^-½ ∂ID/∂q D^-½ and of D^½ ∂FD/∂q D^-½ are all in 1/s², those by v and the scaled C in 1/s. There they may be
 //! compared: the error is the largest scaled difference over the largest scaled entry of the reference.
 
-use super::{Magnitudes, ratio, worst};
+use super::magnitudes::Magnitudes;
+use super::ratio::{ratio, worst};
 use crate::{Quantity, Robot, layout};
 use featherbench_dynamics::{Crba, TreeSparse};
 use featherbench_model::JointKind;

@@ -1,6 +1,7 @@
 //! Forward dynamics: errors that do not depend on κ(M), and the largest growth of a backward error.
 
-use super::{Magnitudes, ratio, worst};
+use super::magnitudes::Magnitudes;
+use super::ratio::{ratio, worst};
 use crate::Robot;
 use featherbench_dynamics::{Bias, Crba, Ltdl, Rnea, TreeSparse};
 use nalgebra::DMatrix;

@@ -5,7 +5,7 @@
 //! algorithm. In products, angular velocities keep their true length. Their sums hardly cancel, and squared sums of lengths would make the
 //! measure too weak.
 
-use super::worst;
+use super::ratio::worst;
 use crate::Robot;
 use featherbench_spatial::{Motion, Vec3};
 
@@ -39,6 +39,13 @@ pub struct Magnitudes {
 struct Load {
     moment: f64,
     force: f64,
+}
+
+impl Robot {
+    /// The magnitudes at each state.
+    pub fn magnitudes(&self) -> Vec<Magnitudes> {
+        (0..self.states.count()).map(|k| Magnitudes::new(self, k)).collect()
+    }
 }
 
 impl Magnitudes {

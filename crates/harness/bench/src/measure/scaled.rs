@@ -1,6 +1,8 @@
 //! The unit-free error of one quantity at one state.
 
-use super::{Magnitudes, derivative, ratio, worst};
+use super::derivative;
+use super::magnitudes::Magnitudes;
+use super::ratio::{ratio, worst};
 use crate::{Quantity, Robot};
 use featherbench_model::JointKind;
 use featherbench_results::Measure;

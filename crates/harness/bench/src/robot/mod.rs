@@ -10,7 +10,6 @@ mod recognised;
 pub(crate) mod relocation;
 pub(crate) mod source;
 
-use crate::measure::Magnitudes;
 use crate::{Import, RobotFile, RobotSource};
 use featherbench_model::{Description, Malformed, Model};
 use featherbench_results::ModelOrigin;
@@ -179,11 +178,6 @@ impl Robot {
     pub fn base(&self) -> &'static str {
         let floats = self.description.bodies.first().is_some_and(|body| body.joint.kind == featherbench_model::JointType::Free);
         if floats { "free" } else { "fixed" }
-    }
-
-    /// The magnitudes at each state.
-    pub fn magnitudes(&self) -> Vec<Magnitudes> {
-        (0..self.states.count()).map(|k| Magnitudes::new(self, k)).collect()
     }
 
     /// The read-back of an exact engine, in the layout of [`Quantity::Readback`](crate::Quantity::Readback).

@@ -1,6 +1,6 @@
 //! Axes: ranges, places and ticks.
 
-use super::at;
+use super::paper::at;
 use crate::numbers::{larger, smaller};
 
 /// What an axis has at its places.

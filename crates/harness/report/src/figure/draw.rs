@@ -4,9 +4,9 @@ use maud::{Markup, html};
 
 use super::axis::{Scale, Tick};
 use super::marks::{self, Sample, legend, legend_width, path};
+use super::paper::{at, width};
 use super::plot::{Line, Plot, Point, Rows, Series};
 use super::style::{Style, ink};
-use super::{at, width};
 use crate::numbers::larger;
 
 /// Width and height of the box.

@@ -2,7 +2,7 @@
 
 use maud::html;
 
-use super::{Figure, at, csv_line, file, width};
+use super::paper::{Figure, at, csv_line, file, width};
 use crate::numbers::larger;
 
 /// Width and height of a cell.

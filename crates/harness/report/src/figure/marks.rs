@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
+use super::paper::{at, width};
 use super::style::{Style, TICK, ink};
-use super::{at, width};
 
 /// Dashes of lines, by index.
 const DASHES: [Option<&str>; 6] = [None, Some("6 4"), Some("1.5 3"), Some("7 3 1.5 3"), Some("12 4"), Some("12 3 1.5 3")];

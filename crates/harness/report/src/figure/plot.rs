@@ -1,9 +1,7 @@
 //! Plots: lines and marks over two axes.
 
 use super::axis::Axis;
-use super::draw::draw;
 use super::style::Style;
-use super::{Figure, csv_line, file};
 
 /// How points are joined.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -135,32 +133,9 @@ impl Plot {
         Self { title: title.into(), x, y, series, bands: Vec::new() }
     }
 
-    /// Draws it; `None` if no point has a place.
-    pub fn figure(self, name: &'static str, caption: String) -> Option<Figure> {
-        self.figure_with(name, caption, &[])
-    }
-
-    /// The same with events: a vertical line at a place of the axis across, and what happened there.
-    pub fn figure_with(self, name: &'static str, caption: String, events: &[(f64, String)]) -> Option<Figure> {
-        let (size, body) = draw(&self, events, false)?;
-        let svg = file(&self.title, size, body);
-        let csv = self.csv();
-        Some(Figure { name, title: self.title, caption, size, svg, csv })
-    }
-
     /// The points that have a place, with their series.
     pub(super) fn shown(&self) -> impl Iterator<Item = (&Series, &Point)> {
         let points = self.series.iter().flat_map(|series| series.points.iter().map(move |point| (series, point)));
         points.filter(|(_, point)| self.x.fits(point.x) && self.y.fits(point.y))
-    }
-
-    fn csv(&self) -> String {
-        let mut text = csv_line(["series", "name", &self.x.title, &self.y.title]);
-        for series in &self.series {
-            for point in &series.points {
-                text += &csv_line([series.name.as_str(), &point.name, &point.x.to_string(), &point.y.to_string()]);
-            }
-        }
-        text
     }
 }
