@@ -9,6 +9,12 @@ use numpy::{
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
+/// An argument of a method.
+pub(crate) type Given<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// A new array of float64, or the exception.
+pub(crate) type Doubles<'py> = PyResult<Bound<'py, PyArrayDyn<f64>>>;
+
 /// The scalars that arrays can have.
 pub(crate) trait Scalar: Element + Number + Copy + Send + Sync {}
 impl Scalar for f64 {}
@@ -18,7 +24,7 @@ impl Scalar for f32 {}
 ///
 /// # Errors
 /// `TypeError`, naming the argument.
-pub(crate) fn is_double(name: &str, array: &Bound<'_, PyAny>) -> PyResult<bool> {
+pub(crate) fn is_double(name: &str, array: Given<'_, '_>) -> PyResult<bool> {
     // The usual case first: of one state the call itself is most of the time.
     if array.cast::<PyArrayDyn<f64>>().is_ok() {
         return Ok(true);
@@ -59,7 +65,7 @@ pub(crate) type States = Option<usize>;
 ///
 /// # Errors
 /// `TypeError` of the dtype, [`Error`] of the shape; both name the argument.
-pub(crate) fn numbers<'py, S: Scalar>(name: &str, array: &Bound<'py, PyAny>, each: usize) -> PyResult<(Numbers<'py, S>, States)> {
+pub(crate) fn numbers<'py, S: Scalar>(name: &str, array: Given<'_, 'py>, each: usize) -> PyResult<(Numbers<'py, S>, States)> {
     let Ok(array) = array.cast::<PyArrayDyn<S>>() else {
         // Which error it is: no array, or another dtype than that of q.
         is_double(name, array)?;
@@ -82,7 +88,7 @@ pub(crate) fn numbers<'py, S: Scalar>(name: &str, array: &Bound<'py, PyAny>, eac
 /// `TypeError` of the dtype, [`Error`] of the shape, the strides or of an array that cannot be written; each names `out`.
 pub(crate) fn output<'py, S: Scalar>(
     py: Python<'py>,
-    out: Option<&Bound<'py, PyAny>>,
+    out: Option<Given<'_, 'py>>,
     states: States,
     shape: &[usize],
 ) -> PyResult<(Bound<'py, PyArrayDyn<S>>, PyReadwriteArrayDyn<'py, S>)> {

@@ -1,10 +1,11 @@
 //! The engines' coordinates of configurations, there and back.
 
 use crate::Error;
+use crate::arrays::{Doubles, Given};
 use crate::robot::Robot;
 use crate::states::{Argument, failed, map};
+use crate::text::text;
 use featherbench_rbd::{Convention, Robot as Library};
-use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
 /// The engine of a name.
@@ -23,19 +24,19 @@ impl Robot {
         argument: Argument<'_, 'py>,
         size: usize,
         f: impl Fn(&Library, &[f64]) -> Result<Vec<f64>, featherbench_rbd::Error> + Sync,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    ) -> Doubles<'py> {
         map(py, self, [argument], &[size], Some(1), |workspace, [x], out| {
             out.copy_from_slice(&f(workspace.robot(), x)?);
             Ok(())
         })
     }
 
-    fn to_engine<'py>(&self, py: Python<'py>, convention: Convention, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn to_engine<'py>(&self, py: Python<'py>, convention: Convention, q: Given<'_, 'py>) -> Doubles<'py> {
         let size = self.robot.nq_of(convention).map_err(failed)?;
         self.convert(py, ("q", q, self.robot.nq()), size, |robot, q| robot.configuration_to(convention, q))
     }
 
-    fn neutral_from<'py>(&self, py: Python<'py>, convention: Convention, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn neutral_from<'py>(&self, py: Python<'py>, convention: Convention, q: Given<'_, 'py>) -> Doubles<'py> {
         let size = self.robot.nq_of(convention).map_err(failed)?;
         self.convert(py, ("q", q, size), self.robot.nq(), |robot, q| robot.configuration_from(convention, q))
     }
@@ -44,34 +45,19 @@ impl Robot {
 #[pymethods]
 impl Robot {
     /// Give Pinocchio's numbers of configurations; a planar joint has the cosine and sine of its angle.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
+    #[doc = text!(given q)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (n,) or (states, n)
     ///     Rad and m, for a model with this robot's order of joints, and angles of continuous joints. Pinocchio's own URDF parser sorts siblings by
     ///     name, and gives continuous joints a cosine and a sine.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the joint for which the engine has no coordinates.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the joint for which the engine has no coordinates.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q = robot.random(seed=1)
     /// >>> np.array_equal(robot.to_pinocchio(q), q)  # it has no planar joint
     /// True
-    fn to_pinocchio<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn to_pinocchio<'py>(&self, py: Python<'py>, q: Given<'_, 'py>) -> Doubles<'py> {
         self.to_engine(py, Convention::Pinocchio, q)
     }
 
@@ -86,54 +72,28 @@ impl Robot {
     /// -------
     /// ndarray, shape (nq,) or (states, nq)
     ///     Configurations, rad and m; quaternions (x, y, z, w).
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the joint for which the engine has no coordinates.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the joint for which the engine has no coordinates.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q = robot.random(seed=1)
     /// >>> np.allclose(robot.from_pinocchio(robot.to_pinocchio(q)), q)
     /// True
     #[pyo3(name = "from_pinocchio")]
-    fn neutral_from_pinocchio<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn neutral_from_pinocchio<'py>(&self, py: Python<'py>, q: Given<'_, 'py>) -> Doubles<'py> {
         self.neutral_from(py, Convention::Pinocchio, q)
     }
 
     /// Give MuJoCo's numbers of configurations: quaternions (w, x, y, z), free joints with the pose in the world.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
+    #[doc = text!(given q)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nq,) or (states, nq)
     ///     qpos, rad and m.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the joint for which the engine has no coordinates.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the joint for which the engine has no coordinates.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> robot.to_mujoco(robot.neutral())[3:7]
     /// array([1., 0., 0., 0.])
-    fn to_mujoco<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn to_mujoco<'py>(&self, py: Python<'py>, q: Given<'_, 'py>) -> Doubles<'py> {
         self.to_engine(py, Convention::MuJoCo, q)
     }
 
@@ -148,54 +108,28 @@ impl Robot {
     /// -------
     /// ndarray, shape (nq,) or (states, nq)
     ///     Configurations, rad and m; quaternions (x, y, z, w).
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the joint for which the engine has no coordinates.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the joint for which the engine has no coordinates.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q = robot.random(seed=1)
     /// >>> np.allclose(robot.from_mujoco(robot.to_mujoco(q)), q)
     /// True
     #[pyo3(name = "from_mujoco")]
-    fn neutral_from_mujoco<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn neutral_from_mujoco<'py>(&self, py: Python<'py>, q: Given<'_, 'py>) -> Doubles<'py> {
         self.neutral_from(py, Convention::MuJoCo, q)
     }
 
     /// Give Drake's numbers of configurations: free joints begin with the quaternion (w, x, y, z), spherical ones have roll, pitch, yaw.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
+    #[doc = text!(given q)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (n,) or (states, n)
     ///     Drake's positions, rad and m.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the joint for which the engine has no coordinates.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the joint for which the engine has no coordinates.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> robot.to_drake(robot.neutral())[:7]
     /// array([1., 0., 0., 0., 0., 0., 0.])
-    fn to_drake<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn to_drake<'py>(&self, py: Python<'py>, q: Given<'_, 'py>) -> Doubles<'py> {
         self.to_engine(py, Convention::Drake, q)
     }
 
@@ -210,24 +144,13 @@ impl Robot {
     /// -------
     /// ndarray, shape (nq,) or (states, nq)
     ///     Configurations, rad and m; quaternions (x, y, z, w).
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the joint for which the engine has no coordinates.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the joint for which the engine has no coordinates.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q = robot.random(seed=1)
     /// >>> np.allclose(robot.difference(q, robot.from_drake(robot.to_drake(q))), 0)
     /// True
     #[pyo3(name = "from_drake")]
-    fn neutral_from_drake<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn neutral_from_drake<'py>(&self, py: Python<'py>, q: Given<'_, 'py>) -> Doubles<'py> {
         self.neutral_from(py, Convention::Drake, q)
     }
 }

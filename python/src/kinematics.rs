@@ -1,51 +1,27 @@
 //! What moves how: placements, motions and Jacobians of frames.
 
+use crate::arrays::{Doubles, Given};
 use crate::robot::Robot;
 use crate::states::{failed, map};
-use numpy::PyArrayDyn;
+use crate::text::text;
 use pyo3::prelude::*;
 
 #[pymethods]
 impl Robot {
     /// Compute the placements of a frame in the world.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
-    /// frame : str
-    ///     A body, or a frame that is fixed to one.
-    /// threads : int, optional
-    ///     Threads for many states; None takes all cores.
+    #[doc = text!(given q frame threads)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (4, 4) or (states, 4, 4)
     ///     Homogeneous transforms, frame to world; translations in m.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the frame that the robot does not have.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the frame that the robot does not have.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> place = robot.placement(robot.neutral(), "pelvis")
     /// >>> np.array_equal(place, np.eye(4))
     /// True
     #[pyo3(signature = (q, frame, *, threads = Some(1)))]
-    fn placement<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        frame: &str,
-        threads: Option<i64>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn placement<'py>(&self, py: Python<'py>, q: Given<'_, 'py>, frame: &str, threads: Option<i64>) -> Doubles<'py> {
         let frame = self.robot.frame(frame).map_err(failed)?;
         map(py, self, [("q", q, self.robot.nq())], &[4, 4], threads, |workspace, [q], out| {
             let x = workspace.placements(q)?.placement(&frame)?;
@@ -60,36 +36,13 @@ impl Robot {
     }
 
     /// Compute velocities and classical accelerations of a frame's origin.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
-    /// v : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities, rad/s and m/s; of a free joint [linear, angular] in body axes.
-    /// a : ndarray, shape (nv,) or (states, nv)
-    ///     Accelerations, rad/s² and m/s²: the rates of the numbers in v.
-    /// frame : str
-    ///     A body, or a frame that is fixed to one.
-    /// threads : int, optional
-    ///     Threads for many states; None takes all cores.
+    #[doc = text!(given q v a frame threads)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (2, 6) or (states, 2, 6)
     ///     Velocity and acceleration, each [angular, linear] in world axes, rad/s, m/s, rad/s², m/s². Gravity does not enter.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the frame that the robot does not have.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the frame that the robot does not have.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q, v, a = robot.random(seed=1), np.ones(robot.nv), np.ones(robot.nv)
     /// >>> velocity, acceleration = robot.motion(q, v, a, "pelvis")
@@ -99,12 +52,12 @@ impl Robot {
     fn motion<'py>(
         &self,
         py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-        a: &Bound<'py, PyAny>,
+        q: Given<'_, 'py>,
+        v: Given<'_, 'py>,
+        a: Given<'_, 'py>,
         frame: &str,
         threads: Option<i64>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    ) -> Doubles<'py> {
         let frame = self.robot.frame(frame).map_err(failed)?;
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), ("v", v, nv), ("a", a, nv)], &[2, 6], threads, |workspace, [q, v, a], out| {
@@ -116,43 +69,18 @@ impl Robot {
     }
 
     /// Compute Jacobians of a frame.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
-    /// frame : str
-    ///     A body, or a frame that is fixed to one.
-    /// threads : int, optional
-    ///     Threads for many states; None takes all cores.
+    #[doc = text!(given q frame threads)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (6, nv) or (states, 6, nv)
     ///     J, with J v = [angular, linear] velocity of the frame's origin in world axes. Entries are 1 and m.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the frame that the robot does not have.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the frame that the robot does not have.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> robot.jacobian(robot.random(seed=1, states=5), "pelvis").shape
     /// (5, 6, 36)
     #[pyo3(signature = (q, frame, *, threads = Some(1)))]
-    fn jacobian<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        frame: &str,
-        threads: Option<i64>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn jacobian<'py>(&self, py: Python<'py>, q: Given<'_, 'py>, frame: &str, threads: Option<i64>) -> Doubles<'py> {
         let frame = self.robot.frame(frame).map_err(failed)?;
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq)], &[6, nv], threads, |workspace, [q], out| {

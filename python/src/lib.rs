@@ -7,6 +7,7 @@ mod quantities;
 mod rates;
 mod robot;
 mod states;
+mod text;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -1,11 +1,11 @@
 //! What forces do: inverse and forward dynamics, M, solutions with it, derivatives.
 
 use crate::Error;
-use crate::arrays::{Scalar, is_double, numbers, output};
+use crate::arrays::{Doubles, Given, Scalar, is_double, numbers, output};
 use crate::robot::Robot;
 use crate::states::{Argument, agreed, failed, map, pool, threads as threads_of};
+use crate::text::text;
 use featherbench_rbd::dynamics::{Batch, BatchError, Element as BatchElement};
-use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
 #[derive(Clone, Copy)]
@@ -20,7 +20,7 @@ impl Robot {
         &self,
         py: Python<'py>,
         arguments: [Argument<'_, 'py>; 3],
-        out: Option<&Bound<'py, PyAny>>,
+        out: Option<Given<'_, 'py>>,
         threads: Option<i64>,
         quantity: Quantity,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -51,7 +51,7 @@ impl Robot {
         &self,
         py: Python<'py>,
         arguments: [Argument<'_, 'py>; 3],
-        out: Option<&Bound<'py, PyAny>>,
+        out: Option<Given<'_, 'py>>,
         threads: Option<i64>,
         quantity: Quantity,
         batch: Batch<'_, S>,
@@ -83,35 +83,13 @@ impl Robot {
 #[pymethods]
 impl Robot {
     /// Compute inverse dynamics.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w); float64 or float32.
-    /// v : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities, rad/s and m/s; of a free joint [linear, angular] in body axes.
-    /// a : ndarray, shape (nv,) or (states, nv)
-    ///     Accelerations, rad/s² and m/s²: the rates of the numbers in v.
-    /// threads : int, optional
-    ///     Threads for many states; None takes all cores.
-    /// out : ndarray, optional
-    ///     Where the result is written: C-contiguous, of its shape and of the dtype of q.
+    #[doc = text!(given q_of_either v a threads out)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nv,) or (states, nv)
     ///     The joint forces tau = M a + h, N m and N.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    /// TypeError
-    ///     Naming the argument that is no array of float64 or float32, or that has another dtype than q.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors of "float64 or float32, or that has another dtype than q.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q, v, a = robot.random(seed=1), np.ones(robot.nv), np.ones(robot.nv)
     /// >>> tau = robot.inverse_dynamics(q, v, a)
@@ -124,47 +102,24 @@ impl Robot {
     fn inverse_dynamics<'py>(
         &self,
         py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-        a: &Bound<'py, PyAny>,
+        q: Given<'_, 'py>,
+        v: Given<'_, 'py>,
+        a: Given<'_, 'py>,
         threads: Option<i64>,
-        out: Option<&Bound<'py, PyAny>>,
+        out: Option<Given<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         self.three(py, [("q", q, nq), ("v", v, nv), ("a", a, nv)], out, threads, Quantity::InverseDynamics)
     }
 
     /// Compute forward dynamics.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w); float64 or float32.
-    /// v : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities, rad/s and m/s; of a free joint [linear, angular] in body axes.
-    /// tau : ndarray, shape (nv,) or (states, nv)
-    ///     Joint forces, N m and N; of a free joint [force, moment] in body axes.
-    /// threads : int, optional
-    ///     Threads for many states; None takes all cores.
-    /// out : ndarray, optional
-    ///     Where the result is written: C-contiguous, of its shape and of the dtype of q.
+    #[doc = text!(given q_of_either v tau threads out)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nv,) or (states, nv)
     ///     The accelerations, rad/s² and m/s². Of a free joint they are the rates of the numbers in v.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the dof that moves no inertia.
-    /// TypeError
-    ///     Naming the argument that is no array of float64 or float32, or that has another dtype than q.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors of "float64 or float32, or that has another dtype than q." "Naming the dof that moves no inertia.")]
     /// >>> robot = featherbench.Robot.generated("chain:n=2")
     /// >>> q, v = np.array([0.3, -0.1]), np.zeros(2)
     /// >>> a = robot.forward_dynamics(q, v, robot.bias_force(q, v))
@@ -174,88 +129,48 @@ impl Robot {
     fn forward_dynamics<'py>(
         &self,
         py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-        tau: &Bound<'py, PyAny>,
+        q: Given<'_, 'py>,
+        v: Given<'_, 'py>,
+        tau: Given<'_, 'py>,
         threads: Option<i64>,
-        out: Option<&Bound<'py, PyAny>>,
+        out: Option<Given<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         self.three(py, [("q", q, nq), ("v", v, nv), ("tau", tau, nv)], out, threads, Quantity::ForwardDynamics)
     }
 
     /// Compute bias forces: Coriolis, centrifugal and gravitational.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
-    /// v : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities, rad/s and m/s; of a free joint [linear, angular] in body axes.
-    /// threads : int, optional
-    ///     Threads for many states; None takes all cores.
+    #[doc = text!(given q v threads)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nv,) or (states, nv)
     ///     The joint forces at a = 0, N m and N.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors)]
     /// >>> robot = featherbench.Robot.generated("chain:n=2")
     /// >>> q, v = np.array([0.3, -0.1]), np.ones(2)
     /// >>> np.array_equal(robot.bias_force(q, v), robot.inverse_dynamics(q, v, np.zeros(2)))
     /// True
     #[pyo3(signature = (q, v, *, threads = Some(1)))]
-    fn bias_force<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-        threads: Option<i64>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn bias_force<'py>(&self, py: Python<'py>, q: Given<'_, 'py>, v: Given<'_, 'py>, threads: Option<i64>) -> Doubles<'py> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), ("v", v, nv)], &[nv], threads, |workspace, [q, v], out| workspace.bias_force(q, v, None, out))
     }
 
     /// Compute joint-space inertia matrices.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
-    /// threads : int, optional
-    ///     Threads for many states; None takes all cores.
+    #[doc = text!(given q threads)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nv, nv) or (states, nv, nv)
     ///     M, both triangles, armature included. Entries are kg m², kg m and kg, as the dofs are angles or lengths.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors)]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> m = robot.mass_matrix(robot.random(seed=1))
     /// >>> np.array_equal(m, m.T)
     /// True
     #[pyo3(signature = (q, *, threads = Some(1)))]
-    fn mass_matrix<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, threads: Option<i64>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn mass_matrix<'py>(&self, py: Python<'py>, q: Given<'_, 'py>, threads: Option<i64>) -> Doubles<'py> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq)], &[nv, nv], threads, |workspace, [q], out| {
             let matrix = workspace.mass_matrix(q)?;
@@ -268,41 +183,22 @@ impl Robot {
     ///
     /// Parameters
     /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
+    #[doc = text!(q)]
     /// b : ndarray, shape (nv,) or (states, nv)
     ///     Right-hand sides, N m and N.
-    /// threads : int, optional
-    ///     Threads for many states; None takes all cores.
+    #[doc = text!(threads)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nv,) or (states, nv)
     ///     The solutions x, rad/s² and m/s².
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the dof that moves no inertia.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the dof that moves no inertia.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q, b = robot.random(seed=1), np.ones(robot.nv)
     /// >>> np.allclose(robot.mass_matrix(q) @ robot.solve(q, b), b)
     /// True
     #[pyo3(signature = (q, b, *, threads = Some(1)))]
-    fn solve<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        b: &Bound<'py, PyAny>,
-        threads: Option<i64>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn solve<'py>(&self, py: Python<'py>, q: Given<'_, 'py>, b: Given<'_, 'py>, threads: Option<i64>) -> Doubles<'py> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), ("b", b, nv)], &[nv], threads, |workspace, [q, b], out| {
             out.copy_from_slice(b);
@@ -311,33 +207,13 @@ impl Robot {
     }
 
     /// Compute the derivatives of inverse dynamics.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
-    /// v : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities, rad/s and m/s; of a free joint [linear, angular] in body axes.
-    /// a : ndarray, shape (nv,) or (states, nv)
-    ///     Accelerations, rad/s² and m/s²: the rates of the numbers in v.
-    /// threads : int, optional
-    ///     Threads for many states; None takes all cores.
+    #[doc = text!(given q v a threads)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (3, nv, nv) or (states, 3, nv, nv)
     ///     Of tau by q on the tangent space of the configurations, by v, and by a, which is M. Row i is tau[i], in SI units and rad.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors)]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q, v, a = robot.random(seed=1), np.ones(robot.nv), np.ones(robot.nv)
     /// >>> by_q, by_v, by_a = robot.inverse_dynamics_derivatives(q, v, a)
@@ -347,11 +223,11 @@ impl Robot {
     fn inverse_dynamics_derivatives<'py>(
         &self,
         py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-        a: &Bound<'py, PyAny>,
+        q: Given<'_, 'py>,
+        v: Given<'_, 'py>,
+        a: Given<'_, 'py>,
         threads: Option<i64>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    ) -> Doubles<'py> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), ("v", v, nv), ("a", a, nv)], &[3, nv, nv], threads, |workspace, [q, v, a], out| {
             let partials = workspace.inverse_dynamics_derivatives(q, v, a, None)?;
@@ -367,35 +243,14 @@ impl Robot {
     }
 
     /// Compute the derivatives of forward dynamics.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
-    /// v : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities, rad/s and m/s; of a free joint [linear, angular] in body axes.
-    /// tau : ndarray, shape (nv,) or (states, nv)
-    ///     Joint forces, N m and N; of a free joint [force, moment] in body axes.
-    /// threads : int, optional
-    ///     Threads for many states; None takes all cores.
+    #[doc = text!(given q v tau threads)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (3, nv, nv) or (states, 3, nv, nv)
     ///     Of a by q on the tangent space of the configurations, by v, and by tau, which is the inverse of M. Row i is a[i], in SI units
     ///     and rad.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the dof that moves no inertia.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the dof that moves no inertia.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q, v, tau = robot.random(seed=1), np.ones(robot.nv), np.ones(robot.nv)
     /// >>> by_q, by_v, by_tau = robot.forward_dynamics_derivatives(q, v, tau)
@@ -405,11 +260,11 @@ impl Robot {
     fn forward_dynamics_derivatives<'py>(
         &self,
         py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-        tau: &Bound<'py, PyAny>,
+        q: Given<'_, 'py>,
+        v: Given<'_, 'py>,
+        tau: Given<'_, 'py>,
         threads: Option<i64>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    ) -> Doubles<'py> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), ("v", v, nv), ("tau", tau, nv)], &[3, nv, nv], threads, |workspace, [q, v, tau], out| {
             let partials = workspace.forward_dynamics_derivatives(q, v, tau, None)?;

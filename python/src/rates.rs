@@ -1,10 +1,11 @@
 //! The engines' coordinates of velocities, accelerations and joint forces, there and back.
 
+use crate::arrays::{Doubles, Given};
 use crate::coordinates::convention;
 use crate::robot::Robot;
 use crate::states::map;
+use crate::text::text;
 use featherbench_rbd::{Convention, Robot as Library};
-use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
 impl Robot {
@@ -13,10 +14,10 @@ impl Robot {
         &self,
         py: Python<'py>,
         engine: &str,
-        q: &Bound<'py, PyAny>,
-        (name, x): (&'static str, &Bound<'py, PyAny>),
+        q: Given<'_, 'py>,
+        (name, x): (&'static str, Given<'_, 'py>),
         f: impl Fn(&Library, Convention, &[f64], &[f64]) -> Result<Vec<f64>, featherbench_rbd::Error> + Sync,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    ) -> Doubles<'py> {
         let (engine, nq, nv) = (convention(engine)?, self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), (name, x, nv)], &[nv], Some(1), |workspace, [q, x], out| {
             out.copy_from_slice(&f(workspace.robot(), engine, q, x)?);
@@ -29,9 +30,9 @@ impl Robot {
         &self,
         py: Python<'py>,
         engine: &str,
-        [q, v, a]: [&Bound<'py, PyAny>; 3],
+        [q, v, a]: [Given<'_, 'py>; 3],
         f: impl Fn(&Library, Convention, &[f64], &[f64], &[f64]) -> Result<Vec<f64>, featherbench_rbd::Error> + Sync,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    ) -> Doubles<'py> {
         let (engine, nq, nv) = (convention(engine)?, self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), ("v", v, nv), ("a", a, nv)], &[nv], Some(1), |workspace, [q, v, a], out| {
             out.copy_from_slice(&f(workspace.robot(), engine, q, v, a)?);
@@ -43,43 +44,18 @@ impl Robot {
 #[pymethods]
 impl Robot {
     /// Give an engine's numbers of velocities.
-    ///
-    /// Parameters
-    /// ----------
-    /// engine : {'pinocchio', 'mujoco', 'drake'}
-    ///     The engine.
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
-    /// v : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities, rad/s and m/s; of a free joint [linear, angular] in body axes.
+    #[doc = text!(given engine q v)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nv,) or (states, nv)
     ///     The engine's velocities, rad/s and m/s.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the joint for which the engine has no coordinates, or the engine that does not exist.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the joint for which the engine has no coordinates, or the engine that does not exist.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> v = np.arange(36.0)
     /// >>> robot.velocity_to("drake", robot.neutral(), v)[:6]  # [angular, linear] in world axes
     /// array([3., 4., 5., 0., 1., 2.])
-    fn velocity_to<'py>(
-        &self,
-        py: Python<'py>,
-        engine: &str,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn velocity_to<'py>(&self, py: Python<'py>, engine: &str, q: Given<'_, 'py>, v: Given<'_, 'py>) -> Doubles<'py> {
         self.with_q(py, engine, q, ("v", v), Library::velocity_to)
     }
 
@@ -87,10 +63,8 @@ impl Robot {
     ///
     /// Parameters
     /// ----------
-    /// engine : {'pinocchio', 'mujoco', 'drake'}
-    ///     The engine.
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
+    #[doc = text!(engine)]
+    #[doc = text!(q)]
     /// v : ndarray, shape (nv,) or (states, nv)
     ///     The engine's velocities, rad/s and m/s.
     ///
@@ -98,75 +72,30 @@ impl Robot {
     /// -------
     /// ndarray, shape (nv,) or (states, nv)
     ///     Velocities, rad/s and m/s.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the joint for which the engine has no coordinates, or the engine that does not exist.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the joint for which the engine has no coordinates, or the engine that does not exist.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q, v = robot.random(seed=1), np.arange(36.0)
     /// >>> np.allclose(robot.velocity_from("mujoco", q, robot.velocity_to("mujoco", q, v)), v)
     /// True
     #[pyo3(name = "velocity_from")]
-    fn neutral_velocity_from<'py>(
-        &self,
-        py: Python<'py>,
-        engine: &str,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn neutral_velocity_from<'py>(&self, py: Python<'py>, engine: &str, q: Given<'_, 'py>, v: Given<'_, 'py>) -> Doubles<'py> {
         self.with_q(py, engine, q, ("v", v), Library::velocity_from)
     }
 
     /// Give an engine's numbers of accelerations.
-    ///
-    /// Parameters
-    /// ----------
-    /// engine : {'pinocchio', 'mujoco', 'drake'}
-    ///     The engine.
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
-    /// v : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities, rad/s and m/s; of a free joint [linear, angular] in body axes.
-    /// a : ndarray, shape (nv,) or (states, nv)
-    ///     Accelerations, rad/s² and m/s²: the rates of the numbers in v.
+    #[doc = text!(given engine q v a)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nv,) or (states, nv)
     ///     The engine's accelerations, rad/s² and m/s².
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the joint for which the engine has no coordinates, or the engine that does not exist.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the joint for which the engine has no coordinates, or the engine that does not exist.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> v, a = np.zeros(36), np.zeros(36)
     /// >>> v[0], v[5] = 2, 3  # ahead, and turning to the left
     /// >>> robot.acceleration_to("mujoco", robot.neutral(), v, a)[:3]  # of the origin, in world axes
     /// array([0., 6., 0.])
-    fn acceleration_to<'py>(
-        &self,
-        py: Python<'py>,
-        engine: &str,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-        a: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn acceleration_to<'py>(&self, py: Python<'py>, engine: &str, q: Given<'_, 'py>, v: Given<'_, 'py>, a: Given<'_, 'py>) -> Doubles<'py> {
         self.with_q_v(py, engine, [q, v, a], Library::acceleration_to)
     }
 
@@ -174,12 +103,9 @@ impl Robot {
     ///
     /// Parameters
     /// ----------
-    /// engine : {'pinocchio', 'mujoco', 'drake'}
-    ///     The engine.
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
-    /// v : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities, rad/s and m/s; of a free joint [linear, angular] in body axes.
+    #[doc = text!(engine)]
+    #[doc = text!(q)]
+    #[doc = text!(v)]
     /// a : ndarray, shape (nv,) or (states, nv)
     ///     The engine's accelerations, rad/s² and m/s².
     ///
@@ -187,18 +113,7 @@ impl Robot {
     /// -------
     /// ndarray, shape (nv,) or (states, nv)
     ///     Accelerations, rad/s² and m/s²: the rates of the numbers in v.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the joint for which the engine has no coordinates, or the engine that does not exist.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the joint for which the engine has no coordinates, or the engine that does not exist.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q, v, a = robot.random(seed=1), np.ones(robot.nv), np.ones(robot.nv)
     /// >>> theirs = robot.acceleration_to("drake", q, v, a)
@@ -209,52 +124,27 @@ impl Robot {
         &self,
         py: Python<'py>,
         engine: &str,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-        a: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        q: Given<'_, 'py>,
+        v: Given<'_, 'py>,
+        a: Given<'_, 'py>,
+    ) -> Doubles<'py> {
         self.with_q_v(py, engine, [q, v, a], Library::acceleration_from)
     }
 
     /// Give an engine's numbers of joint forces.
-    ///
-    /// Parameters
-    /// ----------
-    /// engine : {'pinocchio', 'mujoco', 'drake'}
-    ///     The engine.
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
-    /// tau : ndarray, shape (nv,) or (states, nv)
-    ///     Joint forces, N m and N; of a free joint [force, moment] in body axes.
+    #[doc = text!(given engine q tau)]
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nv,) or (states, nv)
     ///     The engine's joint forces, N m and N.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the joint for which the engine has no coordinates, or the engine that does not exist.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the joint for which the engine has no coordinates, or the engine that does not exist.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q, v, tau = robot.random(seed=1), np.ones(36), np.arange(36.0)
     /// >>> power = robot.velocity_to("drake", q, v) @ robot.force_to("drake", q, tau)
     /// >>> np.isclose(power, v @ tau)  # the power is the same
     /// np.True_
-    fn force_to<'py>(
-        &self,
-        py: Python<'py>,
-        engine: &str,
-        q: &Bound<'py, PyAny>,
-        tau: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn force_to<'py>(&self, py: Python<'py>, engine: &str, q: Given<'_, 'py>, tau: Given<'_, 'py>) -> Doubles<'py> {
         self.with_q(py, engine, q, ("tau", tau), Library::force_to)
     }
 
@@ -262,10 +152,8 @@ impl Robot {
     ///
     /// Parameters
     /// ----------
-    /// engine : {'pinocchio', 'mujoco', 'drake'}
-    ///     The engine.
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, rad and m; quaternions (x, y, z, w).
+    #[doc = text!(engine)]
+    #[doc = text!(q)]
     /// tau : ndarray, shape (nv,) or (states, nv)
     ///     The engine's joint forces, N m and N.
     ///
@@ -273,30 +161,13 @@ impl Robot {
     /// -------
     /// ndarray, shape (nv,) or (states, nv)
     ///     Joint forces, N m and N.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    ///     Naming the joint for which the engine has no coordinates, or the engine that does not exist.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors "Naming the joint for which the engine has no coordinates, or the engine that does not exist.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q, tau = robot.random(seed=1), np.arange(36.0)
     /// >>> np.allclose(robot.force_from("mujoco", q, robot.force_to("mujoco", q, tau)), tau)
     /// True
     #[pyo3(name = "force_from")]
-    fn neutral_force_from<'py>(
-        &self,
-        py: Python<'py>,
-        engine: &str,
-        q: &Bound<'py, PyAny>,
-        tau: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn neutral_force_from<'py>(&self, py: Python<'py>, engine: &str, q: Given<'_, 'py>, tau: Given<'_, 'py>) -> Doubles<'py> {
         self.with_q(py, engine, q, ("tau", tau), Library::force_from)
     }
 }

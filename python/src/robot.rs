@@ -1,9 +1,9 @@
 //! The class `Robot`.
 
-use crate::arrays::output;
+use crate::arrays::{Doubles, Given, output};
 use crate::states::{failed, map};
+use crate::text::text;
 use featherbench_rbd::{Error, Robot as Library, Workspace};
-use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -259,7 +259,7 @@ impl Robot {
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> robot.neutral()[:7]  # of the free joint: the origin, and the quaternion (x, y, z, w)
     /// array([0., 0., 0., 0., 0., 0., 1.])
-    fn neutral<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn neutral<'py>(&self, py: Python<'py>) -> Doubles<'py> {
         filled(py, &self.robot.neutral(), &[self.robot.nq()])
     }
 
@@ -288,7 +288,7 @@ impl Robot {
     /// >>> robot.random(seed=1).shape, robot.random(seed=1, states=5).shape
     /// ((37,), (5, 37))
     #[pyo3(signature = (seed = 0, states = None))]
-    fn random<'py>(&self, py: Python<'py>, seed: u64, states: Option<usize>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn random<'py>(&self, py: Python<'py>, seed: u64, states: Option<usize>) -> Doubles<'py> {
         let nq = self.robot.nq();
         match states {
             None => filled(py, &self.robot.random(seed), &[nq]),
@@ -309,22 +309,12 @@ impl Robot {
     /// -------
     /// ndarray, shape (nq,) or (states, nq)
     ///     q plus v, on the space of configurations, rad and m.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors)]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q, v = robot.random(seed=1), np.full(robot.nv, 0.1)
     /// >>> np.allclose(robot.difference(q, robot.integrate(q, v)), v)
     /// True
-    fn integrate<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, v: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn integrate<'py>(&self, py: Python<'py>, q: Given<'_, 'py>, v: Given<'_, 'py>) -> Doubles<'py> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), ("v", v, nv)], &[nq], Some(1), |workspace, [q, v], out| workspace.robot().integrate_into(q, v, out))
     }
@@ -340,26 +330,11 @@ impl Robot {
     /// -------
     /// ndarray, shape (nv,) or (states, nv)
     ///     end minus start, on the space of configurations, rad/s and m/s. Rotations take the shortest way.
-    ///
-    /// Raises
-    /// ------
-    /// Error
-    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
-    ///     zeros.
-    /// TypeError
-    ///     Naming the argument that is no array of float64.
-    ///
-    /// Examples
-    /// --------
+    #[doc = text!(errors)]
     /// >>> robot = featherbench.Robot.generated("chain:n=2")
     /// >>> robot.difference(np.zeros(2), np.array([0.25, -0.5]))
     /// array([ 0.25, -0.5 ])
-    fn difference<'py>(
-        &self,
-        py: Python<'py>,
-        start: &Bound<'py, PyAny>,
-        end: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn difference<'py>(&self, py: Python<'py>, start: Given<'_, 'py>, end: Given<'_, 'py>) -> Doubles<'py> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("start", start, nq), ("end", end, nq)], &[nv], Some(1), |workspace, [from, to], out| {
             workspace.robot().difference_into(from, to, out).map_err(renamed)
@@ -382,7 +357,7 @@ fn renamed(error: Error) -> Error {
 }
 
 /// A new array of these numbers.
-fn filled<'py>(py: Python<'py>, values: &[f64], shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+fn filled<'py>(py: Python<'py>, values: &[f64], shape: &[usize]) -> Doubles<'py> {
     let (array, mut writable) = output::<f64>(py, None, None, shape)?;
     writable.as_slice_mut()?.copy_from_slice(values);
     drop(writable);

@@ -1,10 +1,9 @@
 //! One function for one state or many: each state in a workspace, and states over threads.
 
 use crate::Error;
-use crate::arrays::{States, numbers, output};
+use crate::arrays::{Doubles, Given, States, numbers, output};
 use crate::robot::Robot;
 use featherbench_rbd::{Error as LibraryError, Workspace};
-use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -46,7 +45,7 @@ pub(crate) fn threads(given: Option<i64>) -> PyResult<usize> {
 }
 
 /// An argument: its name, the array, and its numbers per state.
-pub(crate) type Argument<'a, 'py> = (&'static str, &'a Bound<'py, PyAny>, usize);
+pub(crate) type Argument<'a, 'py> = (&'static str, Given<'a, 'py>, usize);
 
 /// The states that all arguments have.
 ///
@@ -71,7 +70,7 @@ pub(crate) fn map<'py, const N: usize>(
     shape: &[usize],
     given_threads: Option<i64>,
     each: impl Fn(&mut Workspace, [&[f64]; N], &mut [f64]) -> Result<(), LibraryError> + Sync,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+) -> Doubles<'py> {
     let threads = threads(given_threads)?;
     let mut held = Vec::with_capacity(N);
     for (name, array, count) in arguments {

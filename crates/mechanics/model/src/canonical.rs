@@ -103,7 +103,7 @@ impl Description {
                     *end = LoopEnd { body, placement: end.placement.on(&on_body) };
                 }
                 if ends[0].body == ends[1].body {
-                    return Err(given.bad(index, LoopDefect::SameBody));
+                    return Err(Malformed::Loop { name: given.name.clone(), index, defect: LoopDefect::SameBody });
                 }
             }
             // Their joints move: so each has a body of its own.

@@ -5,7 +5,7 @@
 
 use crate::orthonormal::not_a_rotation;
 use crate::words::words;
-use crate::{Description, Malformed, Placement};
+use crate::{Description, Placement};
 use std::collections::HashSet;
 use thiserror::Error;
 
@@ -293,11 +293,6 @@ impl ContinuumMaterial {
 }
 
 impl Continuum {
-    /// The error that names this continuum.
-    fn bad(&self, index: usize, defect: ContinuumDefect) -> Malformed {
-        Malformed::Continuum { name: self.name.clone(), index, defect }
-    }
-
     fn check(&self, count: usize) -> Result<(), ContinuumDefect> {
         if let Some(body) = self.body.filter(|body| *body >= count) {
             return Err(ContinuumDefect::ClampedToNothing { body, count });
@@ -347,33 +342,16 @@ impl Continuum {
 }
 
 impl Description {
-    /// The first malformed continuum.
-    pub(crate) fn validate_continua(&self) -> Result<(), Malformed> {
+    /// The first malformed continuum, by its index.
+    pub(crate) fn validate_continua(&self) -> Result<(), (usize, ContinuumDefect)> {
         let mut names = HashSet::new();
         for (index, continuum) in self.continua.iter().enumerate() {
             if !names.insert(continuum.name.as_str()) {
-                return Err(continuum.bad(index, ContinuumDefect::DuplicateName));
+                return Err((index, ContinuumDefect::DuplicateName));
             }
-            continuum.check(self.bodies.len()).map_err(|defect| continuum.bad(index, defect))?;
+            continuum.check(self.bodies.len()).map_err(|defect| (index, defect))?;
         }
         Ok(())
-    }
-
-    /// An error if a body deforms: for what computes with rigid trees alone.
-    ///
-    /// # Errors
-    /// [`Malformed::Deforms`], naming the continua.
-    ///
-    /// ```
-    /// use featherbench_model::Description;
-    ///
-    /// assert!(Description::default().must_be_rigid().is_ok());
-    /// ```
-    pub fn must_be_rigid(&self) -> Result<(), Malformed> {
-        if self.continua.is_empty() {
-            return Ok(());
-        }
-        Err(Malformed::Deforms { names: self.continua.iter().map(|continuum| continuum.name.clone()).collect() })
     }
 }
 

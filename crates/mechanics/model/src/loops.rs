@@ -6,7 +6,7 @@
 
 use crate::orthonormal::not_a_rotation;
 use crate::words::words;
-use crate::{Description, Malformed, Placement};
+use crate::{Description, Placement};
 use std::collections::HashSet;
 use thiserror::Error;
 
@@ -230,11 +230,6 @@ impl Loop {
         }
     }
 
-    /// The error that names this loop.
-    pub(crate) fn bad(&self, index: usize, defect: LoopDefect) -> Malformed {
-        Malformed::Loop { name: self.name.clone(), index, defect }
-    }
-
     fn check(&self, robot: &Description) -> Result<(), LoopDefect> {
         if let Some(ends) = self.ends() {
             for (end, field) in ends.iter().zip(["first", "second"]) {
@@ -296,14 +291,14 @@ impl LoopEnd {
 }
 
 impl Description {
-    /// The first malformed loop.
-    pub(crate) fn validate_loops(&self) -> Result<(), Malformed> {
+    /// The first malformed loop, by its index.
+    pub(crate) fn validate_loops(&self) -> Result<(), (usize, LoopDefect)> {
         let mut names = HashSet::new();
         for (index, tie) in self.loops.iter().enumerate() {
             if !names.insert(tie.name.as_str()) {
-                return Err(tie.bad(index, LoopDefect::DuplicateName));
+                return Err((index, LoopDefect::DuplicateName));
             }
-            tie.check(self).map_err(|defect| tie.bad(index, defect))?;
+            tie.check(self).map_err(|defect| (index, defect))?;
         }
         Ok(())
     }

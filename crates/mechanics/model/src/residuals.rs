@@ -3,7 +3,7 @@
 //! They are data. A [`Model`](crate::Model) is that of the rigid bodies alone; `featherbench_residuals` computes with them. A residual acts on the
 //! joints of the bodies that it names, by index in the description; its lists have the numbers of these joints, one joint after the other.
 
-use crate::{Description, JointType, Malformed};
+use crate::{Description, JointType};
 use std::collections::HashSet;
 use thiserror::Error;
 
@@ -343,17 +343,16 @@ impl ResidualNumbers<'_> {
 }
 
 impl Description {
-    /// The first malformed residual.
-    pub(crate) fn validate_residuals(&self) -> Result<(), Malformed> {
+    /// The first malformed residual, by its index.
+    pub(crate) fn validate_residuals(&self) -> Result<(), (usize, ResidualDefect)> {
         let (mut names, mut driven) = (HashSet::new(), HashSet::new());
         for (index, residual) in self.residuals.iter().enumerate() {
-            let bad = |defect| Malformed::Residual { name: residual.name.clone(), index, defect };
             if !names.insert(residual.name.as_str()) {
-                return Err(bad(ResidualDefect::DuplicateName));
+                return Err((index, ResidualDefect::DuplicateName));
             }
-            self.check_residual(residual).map_err(bad)?;
+            self.check_residual(residual).map_err(|defect| (index, defect))?;
             if let Some(&body) = residual.bodies.iter().find(|&&body| residual.law.is_drive() && !driven.insert(body)) {
-                return Err(bad(ResidualDefect::SecondDrive { body }));
+                return Err((index, ResidualDefect::SecondDrive { body }));
             }
         }
         Ok(())

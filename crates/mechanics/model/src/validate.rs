@@ -278,10 +278,30 @@ impl Description {
                 return Err(Malformed::FrameNotARotation { frame: frame.name.clone(), error });
             }
         }
-        self.validate_loops()?;
-        self.validate_continua()?;
-        self.validate_residuals()?;
+        let name = |index: usize| self.loops[index].name.clone();
+        self.validate_loops().map_err(|(index, defect)| Malformed::Loop { name: name(index), index, defect })?;
+        let name = |index: usize| self.continua[index].name.clone();
+        self.validate_continua().map_err(|(index, defect)| Malformed::Continuum { name: name(index), index, defect })?;
+        let name = |index: usize| self.residuals[index].name.clone();
+        self.validate_residuals().map_err(|(index, defect)| Malformed::Residual { name: name(index), index, defect })?;
         self.validate_uncertain()
+    }
+
+    /// An error if a body deforms: for what computes with rigid trees alone.
+    ///
+    /// # Errors
+    /// [`Malformed::Deforms`], naming the continua.
+    ///
+    /// ```
+    /// use featherbench_model::Description;
+    ///
+    /// assert!(Description::default().must_be_rigid().is_ok());
+    /// ```
+    pub fn must_be_rigid(&self) -> Result<(), Malformed> {
+        if self.continua.is_empty() {
+            return Ok(());
+        }
+        Err(Malformed::Deforms { names: self.continua.iter().map(|continuum| continuum.name.clone()).collect() })
     }
 
     /// Every chain of parents must end at the world; a chain of more steps than there are bodies has a cycle.

@@ -4,7 +4,7 @@ use super::Options;
 use super::angles::rotation;
 use super::error::{At, NoteAt, UrdfProblem};
 use super::xml::Element;
-use featherbench_model::Placement;
+use featherbench_model::{JointDescription, JointType, Placement};
 use featherbench_spatial::{DoubleDouble, Mat3, Real, Sym3, Vec3, largest};
 use roxmltree::{Document, Node};
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -29,17 +29,12 @@ pub(super) struct Link {
 /// A joint.
 pub(super) struct Joint {
     pub offset: usize,
-    pub name: String,
-    pub kind: Kind,
-    pub placement: Placement,
+    /// As the file has it: a planar joint's frame is not yet turned into its plane.
+    pub described: JointDescription,
+    /// The normal of a planar joint's plane.
+    pub normal: Option<[f64; 3]>,
     pub parent: String,
     pub child: String,
-    pub lower: Vec<f64>,
-    pub upper: Vec<f64>,
-    pub velocity: Vec<f64>,
-    pub effort: Vec<f64>,
-    pub damping: Vec<f64>,
-    pub friction: Vec<f64>,
     /// The joint that it follows.
     pub mimics: Option<Mimicry>,
 }
@@ -52,15 +47,6 @@ pub(super) struct Mimicry {
     pub of: String,
     /// Offset and multiplier; none of a joint that is read as independent.
     pub line: Option<[f64; 2]>,
-}
-
-/// A joint's type with its unit axis.
-pub(super) enum Kind {
-    Fixed,
-    Revolute([f64; 3]),
-    Prismatic([f64; 3]),
-    Floating,
-    Planar([f64; 3]),
 }
 
 /// An axis that deviates from length one by more is normalised at once. One that deviates by less keeps its bits: the canonical form
@@ -135,11 +121,11 @@ fn refuse_macros(root: Node) -> Result<(), At> {
 
 /// Notes joints that mimic a missing joint, and cycles of joints that mimic each other: no joint drives them.
 fn note_mimics_of_nothing(joints: &[Joint], notes: &mut Vec<NoteAt>) {
-    let index: HashMap<&str, usize> = joints.iter().enumerate().map(|(k, joint)| (joint.name.as_str(), k)).collect();
+    let index: HashMap<&str, usize> = joints.iter().enumerate().map(|(k, joint)| (joint.described.name.as_str(), k)).collect();
     for (k, joint) in joints.iter().enumerate() {
         let Some(Mimicry { of, place, .. }) = &joint.mimics else { continue };
         if !index.contains_key(of.as_str()) {
-            let text = format!("joint '{}' mimics '{of}', which is not there", joint.name);
+            let text = format!("joint '{}' mimics '{of}', which is not there", joint.described.name);
             notes.push(NoteAt::new(*place, text));
         }
         let follow = |k: &usize| joints[*k].mimics.as_ref().and_then(|mimic| index.get(mimic.of.as_str()).copied());
@@ -148,7 +134,8 @@ fn note_mimics_of_nothing(joints: &[Joint], notes: &mut Vec<NoteAt>) {
         let Some(length) = behind.iter().position(|&at| at == k) else { continue };
         let circle = &behind[..=length];
         if circle.iter().all(|&at| at >= k) {
-            let names = std::iter::once(&k).chain(circle).map(|&at| format!("'{}'", joints[at].name)).collect::<Vec<_>>().join(" → ");
+            let names =
+                std::iter::once(&k).chain(circle).map(|&at| format!("'{}'", joints[at].described.name)).collect::<Vec<_>>().join(" → ");
             let text = format!("the joints {names} mimic each other in a circle: nothing drives them");
             notes.push(NoteAt::new(*place, text));
         }
@@ -158,15 +145,15 @@ fn note_mimics_of_nothing(joints: &[Joint], notes: &mut Vec<NoteAt>) {
 /// An error if a joint that is to follow another cannot.
 fn check_mimic(joint: &Joint, joints: &[Joint]) -> Result<(), At> {
     let Some(Mimicry { place, of, line: Some(_) }) = &joint.mimics else { return Ok(()) };
-    let has_coordinate = |joint: &Joint| matches!(joint.kind, Kind::Revolute(_) | Kind::Prismatic(_));
-    let why = match joints.iter().find(|known| known.name == *of) {
+    let has_coordinate = |joint: &Joint| joint.described.kind.nv() == 1;
+    let why = match joints.iter().find(|known| known.described.name == *of) {
         None => "which is not there",
-        Some(_) if *of == joint.name => "which is itself",
+        Some(_) if *of == joint.described.name => "which is itself",
         Some(_) if !has_coordinate(joint) => "and has not one degree of freedom itself",
         Some(leader) if !has_coordinate(leader) => "which has not one degree of freedom",
         Some(_) => return Ok(()),
     };
-    Err(UrdfProblem::Mimic { joint: joint.name.clone(), of: of.clone(), why }.at(*place))
+    Err(UrdfProblem::Mimic { joint: joint.described.name.clone(), of: of.clone(), why }.at(*place))
 }
 
 /// One note per kind of element that is not used.
@@ -227,7 +214,7 @@ impl Link {
 impl Joint {
     fn read(element: Element, name: &str, options: &Options, notes: &mut Vec<NoteAt>) -> Result<Self, At> {
         let offset = element.offset();
-        let kind = element.attribute("type")?;
+        let word = element.attribute("type")?;
         let (parent, child) = (element.required("parent")?.attribute("link")?, element.required("child")?.attribute("link")?);
         let placement = origin(element)?;
         let mut mimics = None;
@@ -244,39 +231,29 @@ impl Joint {
             mimics = Some(Mimicry { place, of: of.to_owned(), line });
         }
         let mut axis = || axis(element, name, notes);
-        let kind_read = match kind {
-            "fixed" => Kind::Fixed,
-            "revolute" | "continuous" => Kind::Revolute(axis()?),
-            "prismatic" => Kind::Prismatic(axis()?),
-            "floating" => Kind::Floating,
-            "planar" => Kind::Planar(axis()?),
+        let mut normal = None;
+        let kind = match word {
+            "fixed" => JointType::Fixed,
+            "revolute" | "continuous" => JointType::Revolute { axis: axis()? },
+            "prismatic" => JointType::Prismatic { axis: axis()? },
+            "floating" => JointType::Free,
+            "planar" => {
+                normal = Some(axis()?);
+                JointType::Planar
+            }
             other => return Err(element.problem(UrdfProblem::UnknownJointType { joint: name.to_owned(), kind: other.to_owned() })),
         };
-        let mut joint = Self {
-            offset,
-            name: name.to_owned(),
-            kind: kind_read,
-            placement,
-            parent: parent.to_owned(),
-            child: child.to_owned(),
-            lower: Vec::new(),
-            upper: Vec::new(),
-            velocity: Vec::new(),
-            effort: Vec::new(),
-            damping: Vec::new(),
-            friction: Vec::new(),
-            mimics,
-        };
-        joint.read_properties(element, kind == "continuous", notes)?;
-        Ok(joint)
+        let mut described = JointDescription { name: name.to_owned(), kind, placement, ..JointDescription::default() };
+        Self::read_properties(&mut described, element, word == "continuous", notes)?;
+        Ok(Self { offset, described, normal, parent: parent.to_owned(), child: child.to_owned(), mimics })
     }
 
     /// Limits and friction. URDF has one number each: on joints with several dofs they are left out.
-    fn read_properties(&mut self, element: Element, continuous: bool, notes: &mut Vec<NoteAt>) -> Result<(), At> {
+    fn read_properties(joint: &mut JointDescription, element: Element, continuous: bool, notes: &mut Vec<NoteAt>) -> Result<(), At> {
         let (limit, dynamics) = (element.optional("limit")?, element.optional("dynamics")?);
-        if !matches!(self.kind, Kind::Revolute(_) | Kind::Prismatic(_)) {
-            if let Some(found) = limit.or(dynamics).filter(|_| !matches!(self.kind, Kind::Fixed)) {
-                let text = format!("limits and friction of joint '{}' are not read: it has more than one degree of freedom", self.name);
+        if joint.kind.nv() != 1 {
+            if let Some(found) = limit.or(dynamics).filter(|_| joint.kind != JointType::Fixed) {
+                let text = format!("limits and friction of joint '{}' are not read: it has more than one degree of freedom", joint.name);
                 notes.push(NoteAt::new(found.offset(), text));
             }
             return Ok(());
@@ -287,19 +264,19 @@ impl Joint {
             if !continuous && (given("lower") || given("upper")) {
                 // If one limit is given, the other is zero: so URDF defines it.
                 let side = |name, value: Option<f64>| if given(name) { value } else { Some(0.0) };
-                self.lower.extend(side("lower", lower));
-                self.upper.extend(side("upper", upper));
+                joint.lower.extend(side("lower", lower));
+                joint.upper.extend(side("upper", upper));
             } else if !continuous {
-                notes.push(NoteAt::new(limit.offset(), format!("joint '{}' gives no position limits and has none", self.name)));
+                notes.push(NoteAt::new(limit.offset(), format!("joint '{}' gives no position limits and has none", joint.name)));
             }
-            self.velocity.extend(limit.limit("velocity")?);
-            self.effort.extend(limit.limit("effort")?);
+            joint.velocity.extend(limit.limit("velocity")?);
+            joint.effort.extend(limit.limit("effort")?);
         } else if !continuous {
-            notes.push(NoteAt::new(self.offset, format!("joint '{}' has no <limit> and is unlimited", self.name)));
+            notes.push(NoteAt::new(element.offset(), format!("joint '{}' has no <limit> and is unlimited", joint.name)));
         }
         if let Some(dynamics) = dynamics {
-            self.damping.extend(dynamics.optional_number("damping")?);
-            self.friction.extend(dynamics.optional_number("friction")?);
+            joint.damping.extend(dynamics.optional_number("damping")?);
+            joint.friction.extend(dynamics.optional_number("friction")?);
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! From links and joints to a description.
 
-use super::elements::{Joint, Kind, Link, Mimicry, Robot};
+use super::elements::{Joint, Link, Mimicry, Robot};
 use super::error::{At, NoteAt, UrdfProblem};
 use super::{Base, Options};
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Loop, LoopKind, Malformed, Placement, Warning};
@@ -17,7 +17,7 @@ pub(super) fn assemble(robot: &Robot, options: &Options, notes: &mut Vec<NoteAt>
     let connected = Connected::new(robot)?;
     let base = match connected.floating_base(robot) {
         Some(joint) if options.base == Base::Floating => {
-            let (root, name) = (&robot.links[connected.root].name, &joint.name);
+            let (root, name) = (&robot.links[connected.root].name, &joint.described.name);
             let text =
                 format!("link '{root}' has no inertia and carries the robot on the floating joint '{name}': that joint is the base's");
             notes.push(NoteAt::new(joint.offset, text));
@@ -30,7 +30,7 @@ pub(super) fn assemble(robot: &Robot, options: &Options, notes: &mut Vec<NoteAt>
     // Rotations come from angles: their doubles deviate by no more than rounding.
     for warning in description.normalised() {
         let Warning::Normalised { joint, field: "axis", .. } = &warning else { continue };
-        let offset = robot.joints.iter().find(|known| known.name == *joint).map_or(0, |known| known.offset);
+        let offset = robot.joints.iter().find(|known| known.described.name == *joint).map_or(0, |known| known.offset);
         notes.push(NoteAt { offset, text: warning.to_string(), warning: Some(warning) });
     }
     check_masses(robot, &canonical, options, notes)?;
@@ -51,12 +51,12 @@ impl Connected {
         let mut ends = Vec::with_capacity(robot.joints.len());
         for (k, joint) in robot.joints.iter().enumerate() {
             let find = |link: &str, role| {
-                let unknown = UrdfProblem::UnknownLink { joint: joint.name.clone(), link: link.to_owned(), role };
+                let unknown = UrdfProblem::UnknownLink { joint: joint.described.name.clone(), link: link.to_owned(), role };
                 index.get(link).copied().ok_or_else(|| unknown.at(joint.offset))
             };
             let (parent, child) = (find(&joint.parent, "parent")?, find(&joint.child, "child")?);
             if let Some(first) = carrier[child].replace(k) {
-                let (first, second) = (robot.joints[first].name.clone(), joint.name.clone());
+                let (first, second) = (robot.joints[first].described.name.clone(), joint.described.name.clone());
                 return Err(UrdfProblem::TwoParents { link: joint.child.clone(), first, second }.at(joint.offset));
             }
             ends.push((parent, child));
@@ -72,7 +72,8 @@ impl Connected {
                     break;
                 };
                 if path.len() > robot.links.len() {
-                    let problem = UrdfProblem::Cycle { link: robot.links[at].name.clone(), joint: robot.joints[joint].name.clone() };
+                    let problem =
+                        UrdfProblem::Cycle { link: robot.links[at].name.clone(), joint: robot.joints[joint].described.name.clone() };
                     return Err(problem.at(robot.joints[joint].offset));
                 }
                 path.push(at);
@@ -100,7 +101,7 @@ impl Connected {
         let mut carried = robot.joints.iter().zip(&self.ends).filter(|(_, (parent, _))| *parent == self.root);
         let (joint, _) = carried.next()?;
         let alone = carried.next().is_none() && !robot.links[self.root].has_inertial;
-        (alone && matches!(joint.kind, Kind::Floating)).then_some(joint)
+        (alone && joint.described.kind == JointType::Free).then_some(joint)
     }
 }
 
@@ -123,29 +124,12 @@ fn describe(robot: &Robot, connected: &Connected, base: Base) -> Description {
     bodies.push(body(&robot.links[connected.root], None, root_joint));
     for (joint, &(parent, child)) in robot.joints.iter().zip(&connected.ends) {
         let (parent, link) = (Some(place[parent]), &robot.links[child]);
-        let described = JointDescription {
-            name: joint.name.clone(),
-            kind: match joint.kind {
-                Kind::Fixed => JointType::Fixed,
-                Kind::Revolute(axis) => JointType::Revolute { axis },
-                Kind::Prismatic(axis) => JointType::Prismatic { axis },
-                Kind::Floating => JointType::Free,
-                Kind::Planar(_) => JointType::Planar,
-            },
-            placement: joint.placement,
-            armature: Vec::new(),
-            damping: joint.damping.clone(),
-            friction: joint.friction.clone(),
-            lower: joint.lower.clone(),
-            upper: joint.upper.clone(),
-            velocity: joint.velocity.clone(),
-            effort: joint.effort.clone(),
-        };
+        let described = joint.described.clone();
         match plane(joint) {
             None => bodies.push(body(link, parent, described)),
             Some(turn) => {
                 // The plane's frame moves, and the link is fixed to it with its own axes.
-                let on_plane = joint.placement.to_transform().compose(&Transform::new(turn, Vec3::zero()));
+                let on_plane = described.placement.to_transform().compose(&Transform::new(turn, Vec3::zero()));
                 let described = JointDescription { placement: Placement::from_transform(&on_plane), ..described };
                 let name = format!("{}_plane", link.name);
                 bodies.push(BodyDescription { name: name.clone(), parent, mass: 0.0, com: [0.0; 3], inertia: [0.0; 6], joint: described });
@@ -162,12 +146,12 @@ fn describe(robot: &Robot, connected: &Connected, base: Base) -> Description {
 /// The loops of joints that follow others. A loop has the name of the joint that follows.
 fn mimics(robot: &Robot, connected: &Connected, place: &[usize]) -> Vec<Loop> {
     let body_of: HashMap<&str, usize> =
-        robot.joints.iter().zip(&connected.ends).map(|(joint, &(_, child))| (joint.name.as_str(), place[child])).collect();
+        robot.joints.iter().zip(&connected.ends).map(|(joint, &(_, child))| (joint.described.name.as_str(), place[child])).collect();
     let tie = |joint: &Joint| {
         let Mimicry { of, line: Some([offset, multiplier]), .. } = joint.mimics.as_ref()? else { return None };
-        let (follower, leader) = (*body_of.get(joint.name.as_str())?, *body_of.get(of.as_str())?);
+        let (follower, leader) = (*body_of.get(joint.described.name.as_str())?, *body_of.get(of.as_str())?);
         let polynomial = [*offset, *multiplier, 0.0, 0.0, 0.0];
-        Some(Loop { name: joint.name.clone(), kind: LoopKind::Mimic { follower, leader, polynomial } })
+        Some(Loop { name: joint.described.name.clone(), kind: LoopKind::Mimic { follower, leader, polynomial } })
     };
     robot.joints.iter().filter_map(tie).collect()
 }
@@ -178,12 +162,7 @@ fn body(link: &Link, parent: Option<usize>, joint: JointDescription) -> BodyDesc
 
 /// For a planar joint whose axis is not z: the rotation that takes z to the axis.
 fn plane(joint: &Joint) -> Option<Mat3<f64>> {
-    let Kind::Planar(axis) = joint.kind else {
-        return None;
-    };
-    if axis == [0.0, 0.0, 1.0] {
-        return None;
-    }
+    let axis = joint.normal.filter(|&axis| axis != [0.0, 0.0, 1.0])?;
     let z = Vec3::from_array(axis);
     let z = z * (1.0 / z.norm());
     // x: the coordinate axis farthest from z, orthogonalised.
