@@ -86,7 +86,7 @@ fn flying(name: &'static str, n: usize) -> Case {
             let t = h * f64::from(step);
             let first = arm(t, &s)?;
             let mut to = |from: f64, to: f64, s: &mut [f64], rate: &mut [f64]| {
-                method.run(&mut motion, from, to, s, rate, &tolerance(), |_, _, _| ()).map_err(failed)
+                method.run(&mut motion, [from, to], s, rate, &tolerance(), |_, _, _| ()).map_err(failed)
             };
             to(t, t + 0.5 * h, &mut s, &mut rate)?;
             let middle = arm(t + 0.5 * h, &s)?;
