@@ -41,8 +41,6 @@ pub struct Base {
     pub singular: Vec<f64>,
     /// σ_r/σ_{r+1}; infinite if nothing follows, or if it is zero.
     pub gap: f64,
-    /// Unknowns without effect.
-    pub without_effect: Vec<usize>,
 }
 
 impl Base {
@@ -119,7 +117,7 @@ impl Base {
         if let Some(&value) = lengths.iter().find(|length| !length.is_finite()) {
             return Err(IdentificationError::NotFinite { what: "the length of a column".into(), value });
         }
-        let (kept, without_effect): (Vec<usize>, Vec<usize>) = (0..unknowns).partition(|&k| lengths[k] > NO_EFFECT * longest);
+        let kept: Vec<usize> = (0..unknowns).filter(|&k| lengths[k] > NO_EFFECT * longest).collect();
         if kept.is_empty() {
             return Err(IdentificationError::NoEffect);
         }
@@ -162,7 +160,7 @@ impl Base {
             independent.iter().for_each(|&other| map[(i, other)] = 0.0);
             map[(i, own)] = 1.0;
         }
-        Ok(Self { independent, map, singular, gap, without_effect })
+        Ok(Self { independent, map, singular, gap })
     }
 
     /// How many base parameters there are.

@@ -2,8 +2,8 @@
 
 use crate::log::{Flag, FlagKind};
 use crate::{
-    Base, Consistency, Consistent, ConsistentSettings, Estimate, Fit, IdentificationError, Information, LinearModel, Samples, Semidefinite,
-    Stacking, consistency, fit, log_cholesky, ordinary, total, weighted,
+    Base, Consistency, ConsistentSettings, Estimate, Fit, IdentificationError, Information, LinearModel, Samples, Semidefinite, Stacking,
+    consistency, fit, log_cholesky, ordinary, total, weighted,
 };
 use nalgebra::DMatrix;
 use std::ops::Range;
@@ -111,7 +111,7 @@ pub fn identify(linear: &LinearModel, samples: &Samples, request: &Request) -> R
             let found = log_cholesky(linear, &own, &stacking, ConsistentSettings::default())?;
             Some((found.theta, found.steps))
         }
-        Method::Semidefinite => Some((semidefinite(linear, &own, &estimate, request.solver)?.theta, 0)),
+        Method::Semidefinite => Some((semidefinite(linear, &own, &estimate, request.solver)?, 0)),
         _ => None,
     };
     let (theta, steps) = found.unwrap_or_else(|| (estimate.theta.clone(), 0));
@@ -145,12 +145,12 @@ fn semidefinite(
     samples: &Samples,
     estimate: &Estimate,
     solver: Option<Solve>,
-) -> Result<Consistent, IdentificationError> {
+) -> Result<Vec<f64>, IdentificationError> {
     let solve = solver.ok_or(IdentificationError::NoSolver { reason: "none was given".into() })?;
     let stacking = Stacking { weights: estimate.weights.as_deref(), ..Stacking::plain(linear) };
     let problem = Semidefinite::of(linear, &Information::of(linear, samples, &stacking)?, PULL)?;
     let x = solve(&problem).map_err(|reason| IdentificationError::NoSolver { reason })?;
-    Consistent::from_theta("semidefinite", linear, samples, problem.theta(linear, &x)?)
+    problem.theta(linear, &x)
 }
 
 /// What the motion does not tell, or hardly.

@@ -51,8 +51,6 @@ pub struct Fit {
     pub evaluations: usize,
     /// Root mean square of what is left, over that of the torques.
     pub left: f64,
-    /// Why it ended, in the optimiser's words.
-    pub ended: String,
 }
 
 /// L and V, and their derivatives by q: `values[m]`, `by[m·n + k]`.
@@ -101,7 +99,7 @@ impl Lagrangian {
         }
         let rows = (samples.len() * n) as f64;
         let left = (2.0 * report.objective_function / rows).sqrt();
-        Ok((fitted.net, Fit { evaluations: report.number_of_evaluations, left, ended: format!("{:?}", report.termination) }))
+        Ok((fitted.net, Fit { evaluations: report.number_of_evaluations, left }))
     }
 
     fn outputs(&self) -> usize {

@@ -1,4 +1,4 @@
-//! Operators of types, without a frame of their own for each.
+//! Implementations of operators, without the lines that are alike in each.
 
 /// Implements operators, such as `Add: add(self, other: Self) -> Self { … }`, and after a semicolon those that assign, such as
 /// `AddAssign add_assign +`.

@@ -9,14 +9,12 @@
 //! pull decides only what the torques do not tell. Y enters by its triangular factor: so a step costs O(p³), whatever the length of the
 //! log.
 
-use super::{Fit, fit, sizes};
-use crate::{Base, IdentificationError, Information, Kind, LinearModel, LogCholesky, PseudoInertia, Samples, Stacking};
+use super::sizes;
+use crate::{IdentificationError, Information, Kind, LinearModel, LogCholesky, PseudoInertia, Samples, Stacking};
 use featherbench_dynamics::PARAMETERS;
 use featherbench_spatial::larger;
 use nalgebra::{DMatrix, DVector, Matrix4};
 
-/// The method's name.
-const METHOD: &str = "log-Cholesky";
 /// Bodies of the description whose smallest eigenvalue is below this share of the largest are thickened before they are a start.
 const THIN: f64 = 1e-8;
 /// A friction or armature that the description has as zero starts at this share of its size.
@@ -55,32 +53,10 @@ impl Default for Settings {
 /// A physically consistent estimate.
 #[derive(Clone, Debug)]
 pub struct Consistent {
-    /// The method.
-    pub method: &'static str,
     /// θ̂.
     pub theta: Vec<f64>,
-    /// The base parameters that the samples tell, at θ̂.
-    pub beta: Vec<f64>,
-    /// Those base parameters.
-    pub base: Base,
-    /// Residuals of the samples that were fitted.
-    pub fit: Fit,
     /// Steps that were taken.
     pub steps: usize,
-    /// Bodies of the description that could not exist, or were thin, and were thickened for the start.
-    pub thickened: Vec<String>,
-}
-
-impl Consistent {
-    /// An estimate from θ alone, as a solver outside gives it.
-    ///
-    /// # Errors
-    /// [`IdentificationError`] when θ does not fit the robot or the samples.
-    pub fn from_theta(method: &'static str, linear: &LinearModel, samples: &Samples, theta: Vec<f64>) -> Result<Self, IdentificationError> {
-        let base = Base::of(&Information::of(linear, samples, &Stacking::plain(linear))?)?;
-        let fit = fit(linear, samples, &theta)?;
-        Ok(Self { method, beta: base.values(&theta), base, fit, theta, steps: 0, thickened: Vec::new() })
-    }
 }
 
 /// Physically consistent least squares by log-Cholesky numbers.
@@ -94,24 +70,20 @@ pub fn log_cholesky(
     settings: Settings,
 ) -> Result<Consistent, IdentificationError> {
     let information = Information::of(linear, samples, stacking)?;
-    let base = Base::of(&information)?;
-    let (mut phi, thickened) = start(linear)?;
+    let mut phi = start(linear)?;
     let home = phi.clone();
     let mut steps = 0;
     for pull in PULLS.map(|factor| factor * settings.pull) {
         steps += descend(linear, &information, &mut phi, &home, Settings { pull, ..settings })?;
     }
     let (theta, _) = parameters(linear, &phi);
-    let theta = theta.as_slice().to_vec();
-    let fit = fit(linear, samples, &theta)?;
-    Ok(Consistent { method: METHOD, beta: base.values(&theta), base, fit, theta, steps, thickened })
+    Ok(Consistent { theta: theta.as_slice().to_vec(), steps })
 }
 
-/// φ of the description, and the bodies that were changed for it.
-fn start(linear: &LinearModel) -> Result<(DVector<f64>, Vec<String>), IdentificationError> {
+/// φ of the description. Bodies that could not exist, or are thin, are thickened for it.
+fn start(linear: &LinearModel) -> Result<DVector<f64>, IdentificationError> {
     let (nominal, sizes) = (linear.nominal(), sizes(linear));
     let mut phi = DVector::zeros(nominal.len());
-    let mut thickened = Vec::new();
     for (body, described) in linear.description().bodies.iter().enumerate() {
         let at = PARAMETERS * body;
         let mut pi: [f64; PARAMETERS] = std::array::from_fn(|k| nominal[at + k]);
@@ -121,7 +93,6 @@ fn start(linear: &LinearModel) -> Result<(DVector<f64>, Vec<String>), Identifica
             let missing = (-consistency.smallest).max(0.0) + THIN * consistency.largest;
             let ball = Matrix4::from_diagonal(&nalgebra::Vector4::new(0.01, 0.01, 0.01, 1.0)) * (SMALL * sizes[at]);
             pi = (PseudoInertia::of(&pi) + PseudoInertia(ball + Matrix4::identity() * missing)).parameters();
-            thickened.push(described.name.clone());
         }
         let of_body = LogCholesky::of(&pi).ok_or_else(|| IdentificationError::Unphysical {
             body: described.name.clone(),
@@ -136,7 +107,7 @@ fn start(linear: &LinearModel) -> Result<(DVector<f64>, Vec<String>), Identifica
             Kind::Armature | Kind::Viscous | Kind::Coulomb => phi[k] = nominal[k].max(SMALL * sizes[k]).ln(),
         }
     }
-    Ok((phi, thickened))
+    Ok(phi)
 }
 
 /// θ(φ) and ∂θ/∂φ.
@@ -223,5 +194,5 @@ fn descend(
             }
         }
     }
-    Err(IdentificationError::NotConverged { method: METHOD, iterations: settings.steps, step })
+    Err(IdentificationError::NotConverged { method: "log-Cholesky", iterations: settings.steps, step })
 }

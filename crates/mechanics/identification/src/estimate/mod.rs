@@ -24,8 +24,6 @@ const NORMAL: f64 = 1.959_963_984_540_054;
 /// Estimated parameters.
 #[derive(Clone, Debug)]
 pub struct Estimate {
-    /// The estimator.
-    pub method: &'static str,
     /// What the samples tell: the base parameters.
     pub base: Base,
     /// Their values β̂.
@@ -87,7 +85,7 @@ pub fn student(degrees: usize) -> f64 {
 /// [`IdentificationError`] when the samples do not determine what they tell.
 pub fn ordinary(linear: &LinearModel, samples: &Samples) -> Result<Estimate, IdentificationError> {
     let information = Information::of(linear, samples, &Stacking::plain(linear))?;
-    least_squares("ordinary", linear, samples, &information, None)
+    least_squares(linear, samples, &information, None)
 }
 
 /// Weighted least squares: the equations of each dof divided by the deviation of its residuals, found by [`ordinary`] and once more by itself.
@@ -103,13 +101,12 @@ pub fn weighted(linear: &LinearModel, samples: &Samples) -> Result<Estimate, Ide
             estimate.fit.rms.iter().map(|rms| if loudest > 0.0 { 1.0 / rms.max(1e-6 * loudest) } else { 1.0 }).collect();
         let stacking = Stacking { weights: Some(&weights), ..Stacking::plain(linear) };
         let information = Information::of(linear, samples, &stacking)?;
-        estimate = least_squares("weighted", linear, samples, &information, Some(weights.clone()))?;
+        estimate = least_squares(linear, samples, &information, Some(weights.clone()))?;
     }
     Ok(estimate)
 }
 
 fn least_squares(
-    method: &'static str,
     linear: &LinearModel,
     samples: &Samples,
     information: &Information,
@@ -130,7 +127,7 @@ fn least_squares(
     let beta = beta.as_slice().to_vec();
     let theta = nearest(linear, &base, &beta)?;
     let fit = fit(linear, samples, &theta)?;
-    Ok(Estimate { method, base, beta, covariance, theta, fit, degrees, weights })
+    Ok(Estimate { base, beta, covariance, theta, fit, degrees, weights })
 }
 
 /// The equations of the base parameters alone.
@@ -176,7 +173,7 @@ pub fn total(linear: &LinearModel, samples: &Samples) -> Result<Estimate, Identi
     let theta = nearest(linear, &base, &beta)?;
     let fit = fit(linear, samples, &theta)?;
     let degrees = information.rows() - rank;
-    Ok(Estimate { method: "total", base, beta, covariance: None, theta, fit, degrees, weights: None })
+    Ok(Estimate { base, beta, covariance: None, theta, fit, degrees, weights: None })
 }
 
 /// Of all θ with `B θ = β` the one nearest to the nominal parameters, each measured by the size of its kind.

@@ -21,8 +21,6 @@ pub struct Fit {
 /// The test of G. Ljung & G. Box (1978): `Q = n(n + 2) Σ_k r_k²/(n − k)` over [`LAGS`] lags is χ² distributed if the residual is white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Whiteness {
-    /// Q.
-    pub statistic: f64,
     /// The probability of a larger Q if the residual is white.
     pub probability: f64,
 }
@@ -77,8 +75,7 @@ pub fn whiteness(residual: &[f64]) -> Option<Whiteness> {
         let together: f64 = centred.iter().zip(&centred[lag..]).map(|(a, b)| a * b).sum();
         (together / variance).powi(2) / (n - lag as f64)
     };
-    let statistic = n * (n + 2.0) * (1..=LAGS).map(share).sum::<f64>();
-    Some(Whiteness { statistic, probability: tail(statistic) })
+    Some(Whiteness { probability: tail(n * (n + 2.0) * (1..=LAGS).map(share).sum::<f64>()) })
 }
 
 /// The tail of χ² with [`LAGS`] degrees of freedom: `e^{−x/2} Σ_{k < LAGS/2} (x/2)ᵏ/k!`.
