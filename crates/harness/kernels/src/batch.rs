@@ -48,7 +48,9 @@ pub(crate) fn double<'a>(robot: &'a Robot, states: &'a StateBatch, quantity: Qua
         Quantity::BodyJacobian => |batch, body, [q, ..], out| batch.body_jacobian(q, body, out),
         Quantity::ForwardDynamics => |batch, _, [q, v, tau], out| batch.forward_dynamics(q, v, tau, None, out),
         Quantity::InverseDynamicsDq | Quantity::InverseDynamicsDv => |batch, _, [q, v, a], out| batch.id_derivatives(q, v, a, None, out),
-        Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv => |batch, _, [q, v, tau], out| batch.fd_derivatives(q, v, tau, None, out),
+        Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv => {
+            |batch, _, [q, v, tau], out| batch.fd_derivatives(q, v, tau, None, out)
+        }
         Quantity::CoriolisMatrix => |batch, _, [q, v, _], out| batch.coriolis_matrix(q, v, out),
         Quantity::TorqueRegressor => |batch, _, [q, v, a], out| batch.torque_regressor(q, v, a, out),
         _ => return Err(not_offered(quantity, BATCH)),

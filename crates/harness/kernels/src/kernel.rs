@@ -120,10 +120,9 @@ pub(crate) fn kernel<'a>(robot: &'a Robot, quantity: Quantity, method: Method, s
         (Q::CoriolisMatrix, M::Analytic) => derivatives::coriolis(robot, states),
         (Q::TorqueRegressor, M::Analytic) => derivatives::regressor(robot, states),
         (Q::TorqueRegressor, M::Columns) => derivatives::columns(robot, states),
-        (
-            Q::InverseDynamicsDq | Q::InverseDynamicsDv | Q::ForwardDynamicsDq | Q::ForwardDynamicsDv | Q::CoriolisMatrix,
-            M::Dual,
-        ) => derivatives::by_duals(robot, states, quantity),
+        (Q::InverseDynamicsDq | Q::InverseDynamicsDv | Q::ForwardDynamicsDq | Q::ForwardDynamicsDv | Q::CoriolisMatrix, M::Dual) => {
+            derivatives::by_duals(robot, states, quantity)
+        }
         (Q::InverseDynamicsSecond, M::Analytic) => second_derivatives::inverse_dynamics(robot, states),
         (Q::ForwardDynamicsSecond, M::Analytic) => second_derivatives::forward_dynamics(robot, states),
         (Q::InverseDynamicsSecond | Q::ForwardDynamicsSecond, M::Dual) => second_derivatives::by_duals(robot, states, quantity),

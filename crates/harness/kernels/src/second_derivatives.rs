@@ -4,7 +4,7 @@ use crate::kernel::{Failure, Kernel, kept, written};
 use featherbench_bench::by_duals::{move_along, still};
 use featherbench_bench::{Quantity, Robot};
 use featherbench_dynamics::{
-    FdDerivatives, FdHessian, FdPartials, FdSecondPartials, IdDerivatives, IdHessian, IdPartials, IdSecondPartials,
+    FdDerivatives, FdHessian, FdPartials, FdSecondPartials, IdDerivatives, IdHessian, IdPartials, IdSecondPartials, State,
 };
 use featherbench_model::Model;
 use featherbench_robots::StateBatch;
@@ -15,7 +15,8 @@ pub(crate) fn inverse_dynamics<'a>(robot: &'a Robot, states: &'a StateBatch) -> 
     let model = &robot.model;
     let mut hessian = IdHessian::new(&model.topology);
     let evaluate = move |second: &mut IdSecondPartials<f64>, k| {
-        Ok(hessian.run(model, states.q(k), states.v(k), states.a(k), None, states.tau(k), second)?)
+        let state = State { q: states.q(k), v: states.v(k), given: states.a(k), wrenches: None };
+        Ok(hessian.run(model, state, states.tau(k), second)?)
     };
     let n = model.topology.nv();
     let read = move |second: &IdSecondPartials<f64>, out: &mut [f64]| {
@@ -37,7 +38,8 @@ pub(crate) fn forward_dynamics<'a>(robot: &'a Robot, states: &'a StateBatch) -> 
     let model = &robot.model;
     let mut hessian = FdHessian::new(&model.topology);
     let evaluate = move |(first, second): &mut (FdPartials<f64>, FdSecondPartials<f64>), k| {
-        Ok(hessian.run(model, states.q(k), states.v(k), states.tau(k), None, states.a(k), first, second)?)
+        let state = State { q: states.q(k), v: states.v(k), given: states.tau(k), wrenches: None };
+        Ok(hessian.run(model, state, states.a(k), first, second)?)
     };
     let read = |(_, second): &(FdPartials<f64>, FdSecondPartials<f64>), out: &mut [f64]| {
         let blocks = [&second.qq, &second.qv, &second.vv, &second.qtau];

@@ -136,7 +136,7 @@ fn two_integrators_and_the_witness_agree() {
     };
     let (mut q, mut v) = (Squeezer::start(), [0.0; 7]);
     let tolerance = Tolerance { absolute: 1e-12, relative: 1e-12, ..Tolerance::default() };
-    DormandPrince::new(&flat).run(&mut theirs, 0.0, 0.03, &mut q, &mut v, &tolerance, |_, _, _| ()).unwrap();
+    DormandPrince::new(&flat).run(&mut theirs, [0.0, 0.03], &mut q, &mut v, &tolerance, |_, _, _| ()).unwrap();
 
     let witness = [
         15.810_771_196_299_04,

@@ -23,7 +23,7 @@ fn shot(alpha: f64) -> [f64; 2] {
     let tolerance = Tolerance { absolute: 1e-13, relative: 1e-13, ..Tolerance::default() };
     let mut end = |curvature: f64| {
         let (mut q, mut v) = ([0.0; 3], [curvature, 1.0, 0.0]);
-        DormandPrince::new(&slides).run(&mut rod, 0.0, 1.0, &mut q, &mut v, &tolerance, |_, _, _| ()).unwrap();
+        DormandPrince::new(&slides).run(&mut rod, [0.0, 1.0], &mut q, &mut v, &tolerance, |_, _, _| ()).unwrap();
         (v[0], [q[1], q[2]])
     };
     // The curvature at the clamp is α times the reach, at most α and at most √(2α) by the first integral.

@@ -148,9 +148,9 @@ fn a_flying_rod_has_the_momentum_of_its_loads() {
         for step in 0..steps {
             let t = h * f64::from(step);
             let first = rate_of(t, &s);
-            method.run(&mut motion, t, t + 0.5 * h, &mut s, &mut rate, &tolerance, |_, _, _| ()).unwrap();
+            method.run(&mut motion, [t, t + 0.5 * h], &mut s, &mut rate, &tolerance, |_, _, _| ()).unwrap();
             let middle = rate_of(t + 0.5 * h, &s);
-            method.run(&mut motion, t + 0.5 * h, t + h, &mut s, &mut rate, &tolerance, |_, _, _| ()).unwrap();
+            method.run(&mut motion, [t + 0.5 * h, t + h], &mut s, &mut rate, &tolerance, |_, _, _| ()).unwrap();
             turned += (first + middle * 4.0 + rate_of(t + h, &s)) * (h / 6.0);
         }
         let found = momentum(&flying, &s, &rate).unwrap();

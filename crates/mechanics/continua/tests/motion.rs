@@ -108,7 +108,7 @@ fn run(continuum: &Continuum, start: (Vec<f64>, Vec<f64>), time: f64, mut seen: 
     let tolerance = Tolerance { absolute: 1e-11, relative: 1e-11, ..Tolerance::default() };
     let mut motion = Motion::new(continuum, |_| Vec::new());
     DormandPrince::new(continuum.topology())
-        .run(&mut motion, 0.0, time, &mut s, &mut rate, &tolerance, |_, s, rate| seen(s, rate))
+        .run(&mut motion, [0.0, time], &mut s, &mut rate, &tolerance, |_, s, rate| seen(s, rate))
         .unwrap();
     (s, rate)
 }
@@ -200,7 +200,7 @@ fn a_stiff_rod_takes_long_implicit_steps() {
     };
     let (mut q, mut v) = ([0.0], [0.0]);
     DormandPrince::new(&model.topology)
-        .run(&mut fall, 0.0, h * f64::from(steps), &mut q, &mut v, &Tolerance::default(), |_, _, _| ())
+        .run(&mut fall, [0.0, h * f64::from(steps)], &mut q, &mut v, &Tolerance::default(), |_, _, _| ())
         .unwrap();
     // The midpoint rule's error of order h², and deflections of 1e-7.
     assert!((s[0] - q[0]).abs() < 1e-4 && q[0].abs() > 0.1, "{} {}", s[0], q[0]);

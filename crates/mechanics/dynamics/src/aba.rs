@@ -206,9 +206,8 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
     /// Pass 1, outward: `v_i = X v_p + S q̇`, `c_i`, `pᴬ = v_i ×* I v_i − f_ext`. The path begins with ω of the first body's parent.
     #[inline(always)]
     pub(crate) fn outward(&self, first: usize, links: &mut [Link<T>], path: &mut [OnPath<T>]) {
-        let Self { model, q, v, .. } = *self;
         for (i, link) in (first..).zip(links) {
-            by_kind!(T, model.topology.joints()[i].kind, set_moving, model, i, q, v, path, link);
+            by_kind!(T, self.model.topology.joints()[i].kind, set_moving, self, i, path, link);
             self.subtract_wrench(i, link);
         }
     }
@@ -232,8 +231,7 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
         mut outside: Option<&mut Force<T>>,
         smallest: &mut Pivot,
     ) {
-        let Self { model, tau, .. } = *self;
-        let joints = &model.topology.joints()[first..first + links.len()];
+        let joints = &self.model.topology.joints()[first..first + links.len()];
         for (k, joint) in joints.iter().enumerate().rev() {
             let (before, rest) = links.split_at_mut(k);
             let parent = match joint.parent.map(|parent| parent.checked_sub(first)) {
@@ -241,7 +239,7 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
                 Some(None) => outside.as_deref_mut(),
                 None => None,
             };
-            by_kind!(T, joint.kind, pass_to_parent, model, first + k, tau, &mut rest[0], parent, path, smallest);
+            by_kind!(T, joint.kind, pass_to_parent, self, first + k, &mut rest[0], parent, path, smallest);
         }
     }
 
@@ -249,11 +247,10 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
     /// `a` with the dofs of the first body.
     #[inline(always)]
     pub(crate) fn accelerate(&self, first: usize, links: &[Link<T>], path: &mut [OnPath<T>], a: &mut [T], smallest: &mut Pivot) {
-        let Self { model, tau, .. } = *self;
-        let joints = &model.topology.joints()[first..first + links.len()];
+        let joints = &self.model.topology.joints()[first..first + links.len()];
         let Some(first_dof) = joints.first().map(|joint| joint.v) else { return };
         for ((i, joint), link) in (first..).zip(joints).zip(links) {
-            by_kind!(T, joint.kind, accelerate, model, i, tau, &mut a[joint.v - first_dof..], link, path, smallest);
+            by_kind!(T, joint.kind, accelerate, self, i, &mut a[joint.v - first_dof..], link, path, smallest);
         }
     }
 }
@@ -272,7 +269,8 @@ impl<P: Real, T: Real> Inputs<'_, P, T> {
 
 /// Pass 1 for one body: X, which is returned.
 #[inline(always)]
-pub(crate) fn place<T: Real, P: Real + Lift<T>>(kind: JointKind, model: &Model<P>, i: usize, q: &[T], link: &mut Link<T>) -> Transform<T> {
+pub(crate) fn place<T: Real, P: Real + Lift<T>>(kind: JointKind, inputs: &Inputs<'_, P, T>, i: usize, link: &mut Link<T>) -> Transform<T> {
+    let Inputs { model, q, .. } = *inputs;
     let x = kind.transform(&model.placements[i], &model.subspaces[i], &q[model.topology.joints()[i].q..]);
     kind.keep(&x, &mut link.x);
     x
@@ -282,13 +280,13 @@ pub(crate) fn place<T: Real, P: Real + Lift<T>>(kind: JointKind, model: &Model<P
 #[inline(always)]
 pub(crate) fn set_velocity<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
-    model: &Model<P>,
+    inputs: &Inputs<'_, P, T>,
     i: usize,
     x: &Transform<T>,
-    v: &[T],
     path: &mut [OnPath<T>],
     link: &mut Link<T>,
 ) {
+    let Inputs { model, v, .. } = *inputs;
     let (joint, subspace) = (&model.topology.joints()[i], &model.subspaces[i]);
     let joint_velocity = kind.motion(subspace, &v[joint.v..]);
     let (omega, c) = cross_joint(kind, x, path[joint.parent_slot].omega, None, joint_velocity);
@@ -301,31 +299,28 @@ pub(crate) fn set_velocity<T: Real, P: Real + Lift<T>>(
 #[inline(always)]
 fn set_moving<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
-    model: &Model<P>,
+    inputs: &Inputs<'_, P, T>,
     i: usize,
-    q: &[T],
-    v: &[T],
     path: &mut [OnPath<T>],
     link: &mut Link<T>,
 ) {
-    let x = place(kind, model, i, q, link);
-    set_velocity(kind, model, i, &x, v, path, link);
+    let x = place(kind, inputs, i, link);
+    set_velocity(kind, inputs, i, &x, path, link);
 }
 
 /// Pass 2 for one body: eliminates its joint, and adds Iᵃ to its parent's on the path and pᵃ to its parent's pᴬ, `parent_p`. `smallest` takes
 /// note of the pivots D.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes the workspace")]
 fn pass_to_parent<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
-    model: &Model<P>,
+    inputs: &Inputs<'_, P, T>,
     i: usize,
-    tau: &[T],
     link: &mut Link<T>,
     parent_p: Option<&mut Force<T>>,
     path: &mut [OnPath<T>],
     smallest: &mut Pivot,
 ) {
+    let Inputs { model, tau, .. } = *inputs;
     let joints = model.topology.joints();
     let (joint, dof) = (&joints[i], joints[i].v);
     // Iᴬ is complete: the children have been reached
@@ -337,7 +332,8 @@ fn pass_to_parent<T: Real, P: Real + Lift<T>>(
     let (apparent, force) = match kind {
         JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => {
             let (subspace, armature) = (model.subspaces[i].lift(), model.armature[dof].lift());
-            let (apparent, force) = one_dof::eliminate(kind, subspace, armature, tau[dof], inertia, link, dof, smallest);
+            let (apparent, force, d) = one_dof::eliminate(kind, subspace, armature, tau[dof], inertia, link);
+            smallest.note(dof, d.min_lane());
             (Some(apparent), force)
         }
         JointKind::Spherical => {
@@ -388,17 +384,16 @@ fn pass_force_to_parent<T: Real, P: Real + Lift<T>>(
 
 /// Pass 3 for one body: q̈ into the first numbers of `a`, and a = a' + S q̈.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes the outputs")]
 fn accelerate<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
-    model: &Model<P>,
+    inputs: &Inputs<'_, P, T>,
     i: usize,
-    tau: &[T],
     a: &mut [T],
     link: &Link<T>,
     path: &mut [OnPath<T>],
     smallest: &mut Pivot,
 ) {
+    let Inputs { model, tau, .. } = *inputs;
     let (joint, dof) = (&model.topology.joints()[i], model.topology.joints()[i].v);
     let carried = kind.recall(&model.placements[i], &link.x).inverse_motion(path[joint.parent_slot].a) + link.c;
     match kind {

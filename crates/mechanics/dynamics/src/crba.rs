@@ -104,7 +104,8 @@ impl<T: Real> Crba<T> {
                 let dofs = matrix.supported(joint.v + column);
                 let position = matrix.depth(dofs.start) - 1;
                 let (rows, values) = matrix.parts_mut();
-                by_kind!(T, kind, project, forces, dofs.start, subspace, column, &rows[dofs], position, values, 0);
+                let into = Rows { rows: &rows[dofs.clone()], values, start: 0 };
+                by_kind!(T, kind, project, forces, dofs.start, subspace, column, position, into);
             }
             if let Some(parent) = joint.parent {
                 // Iᶜ_p += X* Iᶜ_i X⁻¹,  F_k = X* F_k
@@ -122,7 +123,12 @@ impl<T: Real> Crba<T> {
 
 /// `Iᶜ S_k`: the force that moves a composite body along column `k` of its joint's motion subspace.
 #[inline(always)]
-pub(crate) fn column_force<T: Real, P: Real + Lift<T>>(kind: JointKind, composite: &CentralInertia<T>, subspace: &Motion<P>, k: usize) -> Force<T> {
+pub(crate) fn column_force<T: Real, P: Real + Lift<T>>(
+    kind: JointKind,
+    composite: &CentralInertia<T>,
+    subspace: &Motion<P>,
+    k: usize,
+) -> Force<T> {
     let CentralInertia { mass, com: c, rotational: i } = *composite;
     let zero = T::zero();
     match kind {
@@ -199,21 +205,26 @@ fn transform<T: Real>(x: &Transform<T>, nx: &mut [T], ny: &mut [T], nz: &mut [T]
     }
 }
 
+/// Some rows of the matrix. `values` is the flat array from number `start` on.
+pub(crate) struct Rows<'a, T> {
+    pub(crate) rows: &'a [Row],
+    pub(crate) values: &'a mut [T],
+    pub(crate) start: usize,
+}
+
 /// `M_kj = S_jᵀ F_k` for every supported dof k, whose forces begin at `first`. Dof j is column `column` of its joint's motion subspace, and
-/// stands at `position` in each of the rows. `values` is the flat array from number `start` on.
+/// stands at `position` in each of the rows.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "one joint's step reads the forces, and writes a column into rows of a part of the matrix")]
 pub(crate) fn project<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
     forces: &Forces<T>,
     first: usize,
     subspace: &Motion<P>,
     column: usize,
-    rows: &[Row],
     position: usize,
-    values: &mut [T],
-    start: usize,
+    into: Rows<'_, T>,
 ) {
+    let Rows { rows, values, start } = into;
     let (first, last) = (Forces::<T>::LANES + first, Forces::<T>::LANES + first + rows.len());
     let [nx, ny, nz] = forces.ang.each_ref().map(|component| &component[first..last]);
     let [fx, fy, fz] = forces.lin.each_ref().map(|component| &component[first..last]);

@@ -98,4 +98,5 @@ pub use parents::{NotATree, depth_first_order};
 pub use refined::{Refined, refined_forward_dynamics};
 pub use rnea::{Rnea, inverse_dynamics};
 pub use scaling::{Division, ParallelAba, ParallelCrba, ParallelLtdl, ParallelRnea, Twisted};
+pub use step::State;
 pub use tree_sparse::TreeSparse;

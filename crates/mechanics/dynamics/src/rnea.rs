@@ -38,6 +38,15 @@ pub(crate) struct Moving<T> {
     pub(crate) a: Motion<T>,
 }
 
+/// What the recursions read; `a` is not read where the bodies are not accelerated.
+pub(crate) struct Inputs<'a, P, T> {
+    pub(crate) model: &'a Model<P>,
+    pub(crate) q: &'a [T],
+    pub(crate) v: &'a [T],
+    pub(crate) a: &'a [T],
+    pub(crate) wrenches: Option<&'a [Force<T>]>,
+}
+
 impl<T: Real> Moving<T> {
     pub(crate) fn at_rest() -> Self {
         Self { omega: Vec3::zero(), a: Motion::zero() }
@@ -82,18 +91,14 @@ impl<T: Real> Rnea<T> {
     ) -> Result<(), DimensionError> {
         let Self { links, path } = self;
         expect_workspace(model, links.len(), path.len())?;
-        expect_shapes(model, q, v, wrenches, tau)?;
+        let inputs = Inputs { model, q, v, a, wrenches };
+        inputs.expect_shapes(tau)?;
         let joints = model.topology.joints();
 
         path[0].a.lin = -model.gravity.lift();
 
-        // outward: v_i = X v_p + S q̇,  a_i = X a_p + S q̈ + c,  f_i = I a_i + v_i ×* I v_i − f_ext
-        for (i, joint) in joints.iter().enumerate() {
-            let link = &mut links[i];
-            by_kind!(T, joint.kind, outward::<T, P, ACCELERATED>, model, i, q, v, a, path, link);
-            if let Some(wrenches) = wrenches {
-                link.f -= model.labels[i].force_to_compiled(wrenches[i]);
-            }
+        for (i, link) in links.iter_mut().enumerate() {
+            inputs.outward::<ACCELERATED>(i, path, link);
         }
 
         // inward: τ_i = Sᵀ f_i,  f_p += X* f_i
@@ -111,33 +116,36 @@ impl<T: Real> Rnea<T> {
     }
 }
 
-/// An error if an argument does not fit the model.
-pub(crate) fn expect_shapes<P: Real, T: Real>(
-    model: &Model<P>,
-    q: &[T],
-    v: &[T],
-    wrenches: Option<&[Force<T>]>,
-    tau: &[T],
-) -> Result<(), DimensionError> {
-    expect("configuration q", model.topology.nq(), q.len())?;
-    expect("velocity v", model.topology.nv(), v.len())?;
-    expect("joint forces tau", model.topology.nv(), tau.len())?;
-    expect_wrenches(&model.topology, wrenches)
+impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
+    /// An error if an argument but the acceleration does not fit the model.
+    pub(crate) fn expect_shapes(&self, tau: &[T]) -> Result<(), DimensionError> {
+        let topology = &self.model.topology;
+        expect("configuration q", topology.nq(), self.q.len())?;
+        expect("velocity v", topology.nv(), self.v.len())?;
+        expect("joint forces tau", topology.nv(), tau.len())?;
+        expect_wrenches(topology, self.wrenches)
+    }
+
+    /// The outward step of one body: `v_i = X v_p + S q̇,  a_i = X a_p + S q̈ + c,  f_i = I a_i + v_i ×* I v_i − f_ext`.
+    #[inline(always)]
+    pub(crate) fn outward<const ACCELERATED: bool>(&self, i: usize, path: &mut [Moving<T>], link: &mut Link<T>) {
+        by_kind!(T, self.model.topology.joints()[i].kind, outward::<T, P, ACCELERATED>, self, i, path, link);
+        if let Some(wrenches) = self.wrenches {
+            link.f -= self.model.labels[i].force_to_compiled(wrenches[i]);
+        }
+    }
 }
 
-/// The outward step of one body: its placement, ω, a and f.
+/// The same without external wrenches.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes its link")]
-pub(crate) fn outward<T: Real, P: Real + Lift<T>, const ACCELERATED: bool>(
+fn outward<T: Real, P: Real + Lift<T>, const ACCELERATED: bool>(
     kind: JointKind,
-    model: &Model<P>,
+    inputs: &Inputs<'_, P, T>,
     i: usize,
-    q: &[T],
-    v: &[T],
-    a: &[T],
     path: &mut [Moving<T>],
     link: &mut Link<T>,
 ) {
+    let Inputs { model, q, v, a, .. } = *inputs;
     let (joint, subspace) = (&model.topology.joints()[i], &model.subspaces[i]);
     let (parent, dof) = (&path[joint.parent_slot], joint.v);
     let x = kind.transform(&model.placements[i], subspace, &q[joint.q..]);

@@ -12,6 +12,19 @@ use crate::error::expect;
 use featherbench_model::{Axis, Joint, JointKind, Model, Topology};
 use featherbench_spatial::{Force, Motion, Real, RigidBodyInertia, Transform, Vec3};
 
+/// A state: the configuration, the velocity, what is given with them, and external wrenches.
+#[derive(Clone, Copy, Debug)]
+pub struct State<'a, T> {
+    /// The configuration q.
+    pub q: &'a [T],
+    /// The velocity v.
+    pub v: &'a [T],
+    /// Of inverse dynamics the acceleration v̇, of forward dynamics the joint forces τ.
+    pub given: &'a [T],
+    /// External wrenches [moment; force], one per compiled body, in the described axes.
+    pub wrenches: Option<&'a [Force<T>]>,
+}
+
 /// Calls `step(kind, …)` from one arm per kind, so that each inlined copy is compiled with its kind known. Over a scalar that is
 /// [`Real::COMPACT`], and in a debug build, there is one copy, which reads the kind (`docs/kernels/compilation.md`).
 macro_rules! by_kind {

@@ -13,7 +13,7 @@ use featherbench_dynamics::{
     Aba, Batch, Bias, CenterOfMass, Coriolis, Crba, Energy, FdDerivatives, FdHessian, FdPartials, FdSecondPartials, FloatingBase,
     IdDerivatives, IdHessian, IdPartials, IdSecondPartials, Jacobian, JacobianRate, Kinematics, Ltdl, Momentum, MomentumMatrix, PackedAba,
     PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum, PackedRnea, ParameterSensitivity,
-    Refined, Regressor, RegressorMatrix, Rnea, TreePair, TreeSparse, Twisted, mass_matrix, to_lanes,
+    Refined, Regressor, RegressorMatrix, Rnea, State, TreePair, TreeSparse, Twisted, mass_matrix, to_lanes,
 };
 use featherbench_model::Model;
 use featherbench_robots::{Family, StateBatch};
@@ -147,10 +147,11 @@ fn no_derivative_allocates_in_a_call() {
         let before = ALLOCATIONS.get();
         for k in 0..3 {
             let (q, v, a) = (states.q(k), states.v(k), states.a(k));
+            let state = State { q, v, given: a, wrenches: Some(&f) };
             id.run(&model, q, v, a, Some(&f), &mut id_partials).unwrap();
             fd.run(&model, q, v, a, Some(&f), &mut fd_partials).unwrap();
-            id_hessian.run(&model, q, v, a, Some(&f), v, &mut id_second).unwrap();
-            fd_hessian.run(&model, q, v, a, Some(&f), v, &mut fd_partials, &mut fd_second).unwrap();
+            id_hessian.run(&model, state, v, &mut id_second).unwrap();
+            fd_hessian.run(&model, state, v, &mut fd_partials, &mut fd_second).unwrap();
             id_partials.q.mul(v, &mut out).unwrap();
             id_partials.q.mul_transposed(v, &mut out).unwrap();
             id_partials.q.mul_rows(&fd_partials.v, &mut fd_partials.q).unwrap();
@@ -165,7 +166,7 @@ fn no_derivative_allocates_in_a_call() {
             regressor.energy(&model, q, v, &mut kinetic, &mut potential).unwrap();
             columns.mul(&kinetic, &mut out).unwrap();
             columns.mul_transposed(v, &mut kinetic).unwrap();
-            sensitivity.run(&model, q, v, a, Some(&f), &mut out, &mut dense).unwrap();
+            sensitivity.run(&model, state, &mut out, &mut dense).unwrap();
         }
         assert_eq!(ALLOCATIONS.get() - before, 0, "{name}");
     }
@@ -243,7 +244,7 @@ fn no_integration_allocates_in_a_call() {
             DormandPrince::with_derivatives(t, 1)
         );
         let before = ALLOCATIONS.get();
-        pair.run(&mut duals, 0.0, 1e-2, &mut q, &mut v, &Tolerance::default(), |_, _, _| ()).unwrap();
+        pair.run(&mut duals, [0.0, 1e-2], &mut q, &mut v, &Tolerance::default(), |_, _, _| ()).unwrap();
         assert_eq!(ALLOCATIONS.get() - before, 0, "{name}: adaptive");
     }
 }

@@ -4,7 +4,7 @@ use crate::common;
 
 use common::{distance, each_robot_and_state, larger, largest, robots, within, wrenches};
 use featherbench_dynamics::{
-    PARAMETERS, ParameterSensitivity, Regressor, RegressorMatrix, energy, forward_dynamics, inertial_parameters, inverse_dynamics,
+    PARAMETERS, ParameterSensitivity, Regressor, RegressorMatrix, State, energy, forward_dynamics, inertial_parameters, inverse_dynamics,
     mass_matrix, torque_regressor,
 };
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement};
@@ -110,7 +110,7 @@ fn derivatives_by_parameters_are_those_of_duals() {
         let f = wrenches(model, 2);
         let columns = PARAMETERS * model.described.len();
         let (mut a, mut found) = (vec![0.0; n], vec![0.0; n * columns]);
-        ParameterSensitivity::new(model).run(model, q, v, tau, Some(&f), &mut a, &mut found).unwrap();
+        ParameterSensitivity::new(model).run(model, State { q, v, given: tau, wrenches: Some(&f) }, &mut a, &mut found).unwrap();
         let lifted = model.lift::<Dual<f64>>();
         let duals = |x: &[f64]| x.iter().map(|&x| Dual::constant(x)).collect::<Vec<_>>();
         let lifted_f: Vec<_> = f.iter().map(|f| f.lift::<Dual<f64>>()).collect();

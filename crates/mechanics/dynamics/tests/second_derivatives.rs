@@ -3,7 +3,7 @@
 use crate::common;
 
 use common::{constant, flow, larger, one_of, robots, unit, within, wrenches};
-use featherbench_dynamics::{Aba, FdHessian, FdPartials, FdSecondPartials, IdHessian, IdSecondPartials, Rnea, fd_derivatives};
+use featherbench_dynamics::{Aba, FdHessian, FdPartials, FdSecondPartials, IdHessian, IdSecondPartials, Rnea, State, fd_derivatives};
 use featherbench_model::Model;
 use featherbench_robots::StateBatch;
 use featherbench_spatial::{Dual, Force, Real};
@@ -72,7 +72,7 @@ fn second_derivatives_of_inverse_dynamics_are_those_of_nested_duals() {
         };
         let (still_q, still_v, still_a) = (configuration(model, q, None, None), moving(v, None, None), moving(a, None, None));
         let mut found = IdSecondPartials::new(&model.topology);
-        IdHessian::new(&model.topology).run(model, q, v, a, Some(f), weights, &mut found).unwrap();
+        IdHessian::new(&model.topology).run(model, State { q, v, given: a, wrenches: Some(f) }, weights, &mut found).unwrap();
 
         let truth = second(n, |j, k| weighted(&configuration(model, q, Some(j), Some(k)), &still_v, &still_a));
         // What issue 14 asks of first derivatives.
@@ -104,7 +104,7 @@ fn second_derivatives_of_forward_dynamics_are_those_of_nested_duals() {
         };
         let (still_q, still_v, still_tau) = (configuration(model, q, None, None), moving(v, None, None), moving(tau, None, None));
         let (mut first, mut found) = (FdPartials::new(&model.topology), FdSecondPartials::new(&model.topology));
-        FdHessian::new(&model.topology).run(model, q, v, tau, Some(f), weights, &mut first, &mut found).unwrap();
+        FdHessian::new(&model.topology).run(model, State { q, v, given: tau, wrenches: Some(f) }, weights, &mut first, &mut found).unwrap();
         let dense = |rows: &[f64]| DMatrix::from_row_slice(n, n, rows);
 
         // Three solutions with M, one after the other: κ is 1e3 and less, but 1e5 of chains of 36 and more of the planar one.

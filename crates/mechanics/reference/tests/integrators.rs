@@ -63,7 +63,7 @@ macro_rules! all_fall {
         let (mut q, mut v) = ($q.to_vec(), $v.to_vec());
         let tolerance = Tolerance { absolute: 1e-12, relative: 1e-12, ..Tolerance::default() };
         let mut f = Dynamics::new(model, Passive, &[]).unwrap();
-        DormandPrince::new(t).run(&mut f, 0.0, $time, &mut q, &mut v, &tolerance, |_, _, _| ()).unwrap();
+        DormandPrince::new(t).run(&mut f, [0.0, $time], &mut q, &mut v, &tolerance, |_, _, _| ()).unwrap();
         let error = $error(&q, &v);
         // Some hundred steps, each with its tolerance.
         assert!(error < 1e-9, "adaptive: {error:e}");

@@ -21,8 +21,9 @@ fn settings(engines: &[&str]) -> TimingSettings {
 }
 
 fn study() -> Timing {
-    let kernels =
-        |_: &Robot| vec![(Quantity::InverseDynamics, "rnea_packed"), (Quantity::ForwardDynamics, "aba"), (Quantity::ForwardDynamics, "ltdl")];
+    let kernels = |_: &Robot| {
+        vec![(Quantity::InverseDynamics, "rnea_packed"), (Quantity::ForwardDynamics, "aba"), (Quantity::ForwardDynamics, "ltdl")]
+    };
     Timing { settings: settings(&["double", "absent"]), kernels }
 }
 

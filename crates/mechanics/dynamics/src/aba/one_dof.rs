@@ -3,13 +3,11 @@
 //! A revolute or prismatic joint about or along z of its body has S = 1 in one place. So S picks a column of Iᴬ, and no product is formed.
 
 use super::Link;
-use crate::error::Pivot;
 use featherbench_model::{Axis, JointKind};
 use featherbench_spatial::{ArticulatedInertia, Force, Motion, Real, Vec3};
 
-/// `(Iᵃ, pᵃ)`. Keeps U D⁻¹, D⁻¹ and D⁻¹ u in the link; `smallest` takes note of D.
+/// `(Iᵃ, pᵃ, D)`. Keeps U D⁻¹, D⁻¹ and D⁻¹ u in the link.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "the elimination reads the model and the inputs, and writes the link")]
 pub(super) fn eliminate<T: Real>(
     kind: JointKind,
     subspace: Motion<T>,
@@ -17,22 +15,19 @@ pub(super) fn eliminate<T: Real>(
     tau: T,
     inertia: &ArticulatedInertia<T>,
     link: &mut Link<T>,
-    dof: usize,
-    smallest: &mut Pivot,
-) -> (ArticulatedInertia<T>, Force<T>) {
+) -> (ArticulatedInertia<T>, Force<T>, T) {
     let p = link.p;
     // U = Iᴬ S,  D = Sᵀ U + armature,  u = τ − Sᵀ pᴬ
     let upper_u = times_subspace(kind, inertia, subspace);
     let d = along(kind, subspace, upper_u) + armature;
     let u = tau - along(kind, subspace, p);
-    smallest.note(dof, d.min_lane());
 
     let d_inverse = T::one() / d;
     let scaled = upper_u * d_inverse;
     (link.u_d_inverse, link.d_inverse, link.d_inverse_u) = (scaled, d_inverse, u * d_inverse);
     // Iᵃ = Iᴬ − U D⁻¹ Uᵀ,  pᵃ = pᴬ + Iᵃ c + U D⁻¹ u
     let apparent = inertia.subtract_rank_one(scaled, upper_u);
-    (apparent, upper_u.scale_add(link.d_inverse_u, p + times_velocity_product(kind, &apparent, link.c)))
+    (apparent, upper_u.scale_add(link.d_inverse_u, p + times_velocity_product(kind, &apparent, link.c)), d)
 }
 
 /// pᵃ with c = 0, by U D⁻¹ and D⁻¹ of the link.

@@ -24,9 +24,10 @@ use super::sweep::coriolis_moment;
 use crate::DimensionError;
 use crate::aba::{Inputs, free};
 use crate::error::{Pivot, expect};
-use crate::step::{by_kind, expect_bodies, newton_euler, slides, turns};
+use crate::step::{State, by_kind, expect_bodies, newton_euler, slides, turns};
 use featherbench_model::{Axis, JointKind, Model, Topology};
 use featherbench_spatial::{ArticulatedInertia, Force, Lift, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
+use std::ops::Range;
 
 /// The bodies at one state, the rows of the dofs, and their columns.
 #[derive(Clone, Debug)]
@@ -143,15 +144,6 @@ fn translated<T: Real>(f: Force<T>, d: Vec3<T>) -> Force<T> {
     Force::new(d.cross_add(f.lin, f.ang), f.lin)
 }
 
-/// A state.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct State<'a, T> {
-    pub(super) q: &'a [T],
-    pub(super) v: &'a [T],
-    pub(super) tau: &'a [T],
-    pub(super) wrenches: Option<&'a [Force<T>]>,
-}
-
 impl<T: Real> Articulated<T> {
     pub(super) fn new(topology: &Topology) -> Self {
         let (still, zero) = (Motion::zero(), Vec3::zero());
@@ -179,7 +171,9 @@ impl<T: Real> Articulated<T> {
     /// [`DimensionError`] when an argument or the workspace does not fit the model. What is returned are the pivots D.
     pub(super) fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, at: State<'_, T>, a: &mut [T]) -> Result<Pivot, DimensionError> {
         expect_bodies(model, self.links.len())?;
-        Inputs { model, q: at.q, v: at.v, tau: at.tau, wrenches: at.wrenches }.expect_shapes(a)?;
+        let State { q, v, given: tau, wrenches } = at;
+        let inputs = Inputs { model, q, v, tau, wrenches };
+        inputs.expect_shapes(a)?;
         expect("rows of the workspace", model.topology.nv(), self.rows.len())?;
         let mut smallest = Pivot::none();
         let joints = model.topology.joints();
@@ -188,19 +182,20 @@ impl<T: Real> Articulated<T> {
         for (i, joint) in joints.iter().enumerate() {
             let (before, rest) = links.split_at_mut(i);
             let parent = joint.parent.map(|parent| &before[parent]);
-            by_kind!(T, joint.kind, place, model, i, parent, at, &mut rest[0], rows, columns);
+            by_kind!(T, joint.kind, place, &inputs, i, parent, &mut rest[0], rows, columns);
         }
         // inward: each dof is eliminated, and what remains is passed to the parent
         for (i, joint) in joints.iter().enumerate().rev() {
             let (before, rest) = links.split_at_mut(i);
             let parent = joint.parent.map(|parent| &mut before[parent]);
-            by_kind!(T, joint.kind, eliminate, model, i, at.tau, &mut rest[0], parent, rows, &mut smallest);
+            by_kind!(T, joint.kind, eliminate, &inputs, i, &mut rest[0], parent, rows, &mut smallest);
         }
         // outward: accelerations, the changes by them, and what each joint passes to its parent
         for (i, joint) in joints.iter().enumerate() {
             let (before, rest) = links.split_at_mut(i);
             let parent = joint.parent.map(|parent| &before[parent]);
-            by_kind!(T, joint.kind, accelerate, model, i, parent, &mut rest[0], rows, columns, a);
+            let dofs = joint.v..joint.v + joint.kind.nv();
+            by_kind!(T, joint.kind, accelerate, parent, &mut rest[0], dofs, rows, columns, a);
         }
         Ok(smallest)
     }
@@ -218,30 +213,29 @@ fn turned<T: Real>(kind: JointKind, r: &Mat3<T>, m: Motion<T>) -> Motion<T> {
 
 /// The first outward step of one body.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "one body's step reads the model, its parent and the state, and writes the workspace")]
 fn place<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
-    model: &Model<P>,
+    inputs: &Inputs<'_, P, T>,
     i: usize,
     parent: Option<&Link<T>>,
-    at: State<'_, T>,
     link: &mut Link<T>,
     rows: &mut [Row<T>],
     columns: &mut [Vec<Column<T>>; 2],
 ) {
+    let Inputs { model, q, v, wrenches, .. } = *inputs;
     let (joint, subspace) = (&model.topology.joints()[i], &model.subspaces[i]);
-    let x: Transform<T> = kind.transform(&model.placements[i], subspace, &at.q[joint.q..]);
+    let x: Transform<T> = kind.transform(&model.placements[i], subspace, &q[joint.q..]);
     link.rotation = parent.map_or(Mat3::identity(), |parent| parent.rotation * x.rotation);
     if parent.is_none() {
         link.a = Motion::new(Vec3::zero(), x.rotation.transpose_mul(-model.gravity.lift()));
     }
-    let across = turned(kind, &link.rotation, kind.motion(subspace, &at.v[joint.v..]));
+    let across = turned(kind, &link.rotation, kind.motion(subspace, &v[joint.v..]));
     let parent_omega = parent.map_or(Vec3::zero(), |parent| parent.omega);
     // v = v_p + S q̇: about the body's origin, and seen from it, v has no linear part, and v_p has that of −S q̇
     link.omega = if turns(kind) { parent_omega + across.ang } else { parent_omega };
-    let (v, parent_v) = (Motion::new(link.omega, Vec3::zero()), Motion::new(parent_omega, -across.lin));
+    let (velocity, parent_v) = (Motion::new(link.omega, Vec3::zero()), Motion::new(parent_omega, -across.lin));
     // c = v × S q̇ + [0; ω_p × w]
-    link.c = crossed(kind, v, across);
+    link.c = crossed(kind, velocity, across);
     if let Some(parent) = parent {
         link.d = parent.rotation * x.translation;
         let swing = parent_omega.cross(link.d);
@@ -255,11 +249,11 @@ fn place<T: Real, P: Real + Lift<T>>(
     let own = RigidBodyInertia { mass: own.mass, first_moment, rotational: own.rotational.rotate(link.rotation) };
     link.inertia = own.to_articulated();
     // 2 B x = [2 D x; x × 2 l], l = ω × h
-    let d = coriolis_moment(&own, v);
+    let d = coriolis_moment(&own, velocity);
     let l = link.omega.cross(first_moment);
     link.coriolis = Operator { ang: d + d, lin: Mat3::skew(-(l + l)) };
     link.p = newton_euler(&own, link.omega, None);
-    if let Some(wrenches) = at.wrenches {
+    if let Some(wrenches) = wrenches {
         let f = model.labels[i].force_to_compiled(wrenches[i]);
         link.p -= Force::new(link.rotation * f.ang, link.rotation * f.lin);
     }
@@ -271,7 +265,7 @@ fn place<T: Real, P: Real + Lift<T>>(
         rows[dof].s = s;
         // Ψ̇ = v_p × S,  and Φ̇ = v × S, which is Ψ̇ where one column spans the joint
         let psi = crossed(kind, parent_v, s);
-        let phi = if kind.nv() == 1 { psi } else { crossed(kind, v, s) };
+        let phi = if kind.nv() == 1 { psi } else { crossed(kind, velocity, s) };
         (by_q[dof].turn, by_q[dof].field) = (psi.ang, parent_v.cross_motion(psi));
         (by_v[dof].turn, by_v[dof].field) = (s.ang, psi + phi);
     }
@@ -289,17 +283,16 @@ fn crossed<T: Real>(kind: JointKind, m: Motion<T>, s: Motion<T>) -> Motion<T> {
 
 /// The inward step of one body.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the joint forces, and writes the workspace")]
 fn eliminate<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
-    model: &Model<P>,
+    inputs: &Inputs<'_, P, T>,
     i: usize,
-    tau: &[T],
     link: &mut Link<T>,
     parent: Option<&mut Link<T>>,
     rows: &mut [Row<T>],
     smallest: &mut Pivot,
 ) {
+    let Inputs { model, tau, .. } = *inputs;
     let first = model.topology.joints()[i].v;
     for dof in (first..first + kind.nv()).rev() {
         let row = &mut rows[dof];
@@ -386,20 +379,17 @@ fn along<T: Real>(kind: JointKind, s: Motion<T>, f: Force<T>) -> T {
     }
 }
 
-/// The second outward step of one body.
+/// The second outward step of one body, whose joint has these dofs.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "one body's step reads the model and its parent, and writes the workspace")]
-fn accelerate<T: Real, P: Real + Lift<T>>(
+fn accelerate<T: Real>(
     kind: JointKind,
-    model: &Model<P>,
-    i: usize,
     parent: Option<&Link<T>>,
     link: &mut Link<T>,
+    dofs: Range<usize>,
     rows: &[Row<T>],
     columns: &mut [Vec<Column<T>>; 2],
     a: &mut [T],
 ) {
-    let first = model.topology.joints()[i].v;
     // a_p as the observer at this body's origin sees it, and a' = X a_p + c
     let (observed, carried) = match parent {
         Some(parent) => {
@@ -415,7 +405,7 @@ fn accelerate<T: Real, P: Real + Lift<T>>(
     let force = link.inertia.mul(carried) + link.p;
     link.a = carried;
     let [by_q, by_v] = columns;
-    for dof in first..first + kind.nv() {
+    for dof in dofs {
         let row = &rows[dof];
         a[dof] = row.d_inverse_u - row.scaled.ang.dot(link.a.ang) - row.scaled.lin.dot(link.a.lin);
         link.a = row.s.scale_add(a[dof], link.a);

@@ -15,10 +15,10 @@
 //! Armature adds nothing. Cost: O(n + Σ d_k), d_k the depth of dof k; 15 multiply-adds per stored pair of dofs. A call does not allocate.
 
 use super::columns::{PaddedRow, TwoColumns};
-use super::sweep::{Link, State, Sweep};
+use super::sweep::{Link, Sweep};
 use crate::error::expect;
 use crate::step::by_kind;
-use crate::{DimensionError, TreePair, TreeSparse};
+use crate::{DimensionError, State, TreePair, TreeSparse};
 use featherbench_model::{JointKind, Model, Topology};
 use featherbench_spatial::{Lift, Real};
 
@@ -69,7 +69,7 @@ impl<T: Real> Coriolis<T> {
     #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], v: &[T], matrix: &mut TreePair<T>) -> Result<(), DimensionError> {
         matrix.expect_topology(&model.topology)?;
-        self.sweep.run::<P, true, false>(model, State { q, v, a: &[], wrenches: None, gravity: false })?;
+        self.sweep.run::<P, true, false>(model, State { q, v, given: &[], wrenches: None })?;
         let Self { sweep, path, .. } = self;
         for (i, joint) in model.topology.joints().iter().enumerate() {
             by_kind!(T, joint.kind, rows, model, i, &sweep.links[i], path, matrix);

@@ -12,10 +12,10 @@
 //! `nv`. Each result is `nv`×`nv`, row after row; it is dense within each tree that stands on the world. Units: SI, angles in radians.
 //! Cost: O(n²), about a hundred multiply-adds per entry of the three matrices together, of several columns at a time. A call does not allocate.
 
-use super::articulated::{Articulated, State};
+use super::articulated::Articulated;
 use super::response::Response;
-use crate::Error;
 use crate::error::expect;
+use crate::{Error, State};
 use featherbench_model::{Model, Topology};
 use featherbench_spatial::{Force, Lift, Real};
 
@@ -176,7 +176,7 @@ impl<T: Real> FdDerivatives<T> {
         self.response.expect_topology(topology)?;
 
         // Lanes with a bad pivot do no harm to others: the error comes last.
-        let pivots = self.bodies.run(model, State { q, v, tau, wrenches }, a)?;
+        let pivots = self.bodies.run(model, State { q, v, given: tau, wrenches }, a)?;
         self.response.run(topology, &self.bodies, by_q, by_v, by_tau);
         Ok(pivots.check()?)
     }

@@ -14,9 +14,9 @@
 //! have `nv`. Each result is `nv`×`nv`, row after row. Units: SI. Cost: O(n + Σ d_k·n), d_k the depth of dof k. A call does not allocate.
 
 use crate::error::expect;
-use crate::{Error, FdDerivatives, FdPartials, IdHessian, IdSecondPartials};
+use crate::{Error, FdDerivatives, FdPartials, IdHessian, IdSecondPartials, State};
 use featherbench_model::{Model, Topology};
-use featherbench_spatial::{Force, Lift, Real};
+use featherbench_spatial::{Lift, Real};
 
 /// Second derivatives of weighted forward dynamics, `λ·FD(q, v, τ)`, row after row. Those by (v,τ) and (τ,τ) are zero.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +43,7 @@ impl<T: Real> FdSecondPartials<T> {
 /// The workspace of weighted second derivatives of forward dynamics.
 ///
 /// ```
-/// use featherbench_dynamics::{FdHessian, FdPartials, FdSecondPartials, fd_derivatives};
+/// use featherbench_dynamics::{FdHessian, FdPartials, FdSecondPartials, State, fd_derivatives};
 /// use featherbench_model::Model;
 /// use featherbench_robots::{Family, StateBatch};
 ///
@@ -51,7 +51,8 @@ impl<T: Real> FdSecondPartials<T> {
 /// let states = StateBatch::random(&model, 1, 7);
 /// let (q, v, tau, weights) = (states.q(0), states.v(0), states.tau(0), states.a(0));
 /// let (mut first, mut second) = (FdPartials::new(&model.topology), FdSecondPartials::new(&model.topology));
-/// FdHessian::new(&model.topology).run(&model, q, v, tau, None, weights, &mut first, &mut second)?;
+/// let state = State { q, v, given: tau, wrenches: None };
+/// FdHessian::new(&model.topology).run(&model, state, weights, &mut first, &mut second)?;
 ///
 /// // What a step of 1e-6 in v₂ does to the weighted derivatives by q.
 /// let moved = |step: f64| {
@@ -88,20 +89,16 @@ impl<T: Real> FdHessian<T> {
         }
     }
 
-    /// The first and second derivatives at configuration `q`, velocity `v`, joint forces `tau` and external wrenches; `weights` is λ.
+    /// The first and second derivatives at a state with joint forces; `weights` is λ.
     ///
     /// # Errors
     /// [`Error`] when an argument, the workspace or a result does not fit the model, or when a joint meets no inertia; the results then mean
     /// nothing.
-    #[expect(clippy::too_many_arguments, reason = "a state with wrenches, weights, and two results")]
     #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,
-        q: &[T],
-        v: &[T],
-        tau: &[T],
-        wrenches: Option<&[Force<T>]>,
+        state: State<'_, T>,
         weights: &[T],
         first: &mut FdPartials<T>,
         second: &mut FdSecondPartials<T>,
@@ -112,13 +109,14 @@ impl<T: Real> FdHessian<T> {
         for square in [&second.qq, &second.qv, &second.vv, &second.qtau] {
             expect("second derivatives", n * n, square.len())?;
         }
+        let State { q, v, given: tau, wrenches } = state;
         self.first.run(model, q, v, tau, wrenches, first)?;
 
         for (row, mu) in self.weights.iter_mut().enumerate() {
             let inverse = first.tau[row * n..][..n].iter().zip(weights);
             *mu = inverse.fold(T::zero(), |sum, (entry, lambda)| (-*entry).mul_add(*lambda, sum));
         }
-        self.id.run(model, q, v, &first.acceleration, wrenches, &self.weights, &mut self.partials)?;
+        self.id.run(model, State { given: &first.acceleration, ..state }, &self.weights, &mut self.partials)?;
         let IdSecondPartials { qq, vv, qv, qa: k } = &self.partials;
 
         // second.qv serves as the place of K ∂v̇/∂q
@@ -157,6 +155,6 @@ pub fn fd_hessian<T: Real, P: Real + Lift<T>>(
     weights: &[T],
 ) -> Result<FdSecondPartials<T>, Error> {
     let (mut first, mut second) = (FdPartials::new(&model.topology), FdSecondPartials::new(&model.topology));
-    FdHessian::new(&model.topology).run(model, q, v, tau, None, weights, &mut first, &mut second)?;
+    FdHessian::new(&model.topology).run(model, State { q, v, given: tau, wrenches: None }, weights, &mut first, &mut second)?;
     Ok(second)
 }

@@ -24,9 +24,9 @@
 //! Cost: O(n + Σ d_k), d_k the depth of dof k; 36 multiply-adds per stored pair of dofs. A call does not allocate.
 
 use super::columns::{Columns, Components, PaddedRow, deepest};
-use super::sweep::{Link, State, Sweep};
+use super::sweep::{Link, Sweep};
 use crate::step::by_kind;
-use crate::{DimensionError, TreePair, TreeSparse};
+use crate::{DimensionError, State, TreePair, TreeSparse};
 use featherbench_model::{JointKind, Model, Topology};
 use featherbench_spatial::{Force, Lift, Motion, Real};
 
@@ -149,7 +149,7 @@ impl<T: Real> IdDerivatives<T> {
         partials.q.expect_topology(&model.topology)?;
         partials.v.expect_topology(&model.topology)?;
         partials.a.expect_topology(&model.topology)?;
-        self.sweep.run::<P, true, true>(model, State { q, v, a, wrenches, gravity: true })?;
+        self.sweep.run::<P, true, true>(model, State { q, v, given: a, wrenches })?;
 
         for (i, joint) in model.topology.joints().iter().enumerate() {
             by_kind!(T, joint.kind, rows, model, i, &self.sweep.links[i], &mut self.path, partials);

@@ -26,10 +26,10 @@
 //! `nv`×`nv`, tree-sparse. Units: SI. Cost: O(n + Σ d_k); 51 multiply-adds per stored pair of dofs. A call does not allocate.
 
 use super::columns::{Columns, PaddedRow, deepest};
-use super::sweep::{Link, State, Sweep, coriolis_moment};
+use super::sweep::{Link, Sweep, coriolis_moment};
 use crate::error::expect;
 use crate::step::by_kind;
-use crate::{DimensionError, TreePair, TreeSparse};
+use crate::{DimensionError, State, TreePair, TreeSparse};
 use featherbench_model::{JointKind, Model, Topology};
 use featherbench_spatial::{Force, Lift, Mat3, Motion, Real, RigidBodyInertia, Vec3};
 
@@ -58,7 +58,7 @@ impl<T: Real> IdSecondPartials<T> {
 /// The workspace of weighted second derivatives of inverse dynamics.
 ///
 /// ```
-/// use featherbench_dynamics::{IdHessian, IdSecondPartials, id_derivatives};
+/// use featherbench_dynamics::{IdHessian, IdSecondPartials, State, id_derivatives};
 /// use featherbench_model::Model;
 /// use featherbench_robots::{Family, StateBatch};
 ///
@@ -66,7 +66,7 @@ impl<T: Real> IdSecondPartials<T> {
 /// let states = StateBatch::random(&model, 1, 7);
 /// let (q, v, a, weights) = (states.q(0), states.v(0), states.a(0), states.tau(0));
 /// let mut second = IdSecondPartials::new(&model.topology);
-/// IdHessian::new(&model.topology).run(&model, q, v, a, None, weights, &mut second)?;
+/// IdHessian::new(&model.topology).run(&model, State { q, v, given: a, wrenches: None }, weights, &mut second)?;
 ///
 /// // What a step of 1e-6 in v₂ does to the weighted derivatives by q.
 /// let moved = |step: f64| {
@@ -157,19 +157,15 @@ impl<T: Real> IdHessian<T> {
         Self { sweep: Sweep::new(topology), weighted: vec![Weighted::zero(); topology.bodies()], path }
     }
 
-    /// The second derivatives of `μ·ID` at configuration `q`, velocity `v`, acceleration `a` and external wrenches; `weights` is μ.
+    /// The second derivatives of `μ·ID` at a state with accelerations; `weights` is μ.
     ///
     /// # Errors
     /// [`DimensionError`] when an argument, the workspace or `second` does not fit the model.
-    #[expect(clippy::too_many_arguments, reason = "a state with wrenches, weights, and the result")]
     #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,
-        q: &[T],
-        v: &[T],
-        a: &[T],
-        wrenches: Option<&[Force<T>]>,
+        state: State<'_, T>,
         weights: &[T],
         second: &mut IdSecondPartials<T>,
     ) -> Result<(), DimensionError> {
@@ -178,7 +174,7 @@ impl<T: Real> IdHessian<T> {
             matrix.expect_topology(&model.topology)?;
         }
         second.vv.expect_topology(&model.topology)?;
-        self.sweep.run::<P, true, true>(model, State { q, v, a, wrenches, gravity: true })?;
+        self.sweep.run::<P, true, true>(model, state)?;
         let Self { sweep, weighted, path } = self;
         let joints = model.topology.joints();
 
@@ -336,6 +332,6 @@ pub fn id_hessian<T: Real, P: Real + Lift<T>>(
     weights: &[T],
 ) -> Result<IdSecondPartials<T>, DimensionError> {
     let mut second = IdSecondPartials::new(&model.topology);
-    IdHessian::new(&model.topology).run(model, q, v, a, None, weights, &mut second)?;
+    IdHessian::new(&model.topology).run(model, State { q, v, given: a, wrenches: None }, weights, &mut second)?;
     Ok(second)
 }

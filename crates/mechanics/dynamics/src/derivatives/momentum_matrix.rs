@@ -7,10 +7,10 @@
 //! Frame: world axes, at the centre of mass; [angular; linear]. Shapes: q has `nq` numbers, v has `nv`; A and Ȧ have `nv` columns of six.
 //! Units: SI. Armature adds nothing. Cost: O(n). A call does not allocate.
 
-use super::sweep::{State, Sweep};
-use crate::DimensionError;
+use super::sweep::Sweep;
 use crate::error::expect;
 use crate::step::by_kind;
+use crate::{DimensionError, State};
 use featherbench_model::{JointKind, Model, Topology};
 use featherbench_spatial::{Force, Lift, Motion, Real, Vec3};
 
@@ -55,7 +55,7 @@ impl<T: Real> MomentumMatrix<T> {
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
     #[inline(never)]
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], v: &[T]) -> Result<(), DimensionError> {
-        self.sweep.run::<P, true, false>(model, State { q, v, a: &[], wrenches: None, gravity: false })?;
+        self.sweep.run::<P, true, false>(model, State { q, v, given: &[], wrenches: None })?;
         expect("columns of the workspace", model.topology.nv(), self.columns.len())?;
         let Self { sweep, columns, rates, origins } = self;
         let joints = model.topology.joints();

@@ -7,14 +7,14 @@
 
 use super::regressor::{Regressor, RegressorMatrix};
 use super::solve::solve_negated;
-use crate::{Aba, Crba, Error, Ltdl};
+use crate::{Aba, Crba, Error, Ltdl, State};
 use featherbench_model::Model;
-use featherbench_spatial::{Force, Lift, Real};
+use featherbench_spatial::{Lift, Real};
 
 /// The workspace of the derivatives by inertial parameters.
 ///
 /// ```
-/// use featherbench_dynamics::{ParameterSensitivity, forward_dynamics};
+/// use featherbench_dynamics::{ParameterSensitivity, State, forward_dynamics};
 /// use featherbench_model::Model;
 /// use featherbench_robots::{Family, StateBatch};
 ///
@@ -22,7 +22,7 @@ use featherbench_spatial::{Force, Lift, Real};
 /// let states = StateBatch::random(&model, 1, 7);
 /// let (q, v, tau) = (states.q(0), states.v(0), states.tau(0));
 /// let (mut a, mut by_parameters) = ([0.0; 3], [0.0; 3 * 30]);
-/// ParameterSensitivity::new(&model).run(&model, q, v, tau, None, &mut a, &mut by_parameters)?;
+/// ParameterSensitivity::new(&model).run(&model, State { q, v, given: tau, wrenches: None }, &mut a, &mut by_parameters)?;
 ///
 /// // A gram more at the origin of the last body.
 /// let mut heavier = model.clone();
@@ -50,22 +50,19 @@ impl<T: Real> ParameterSensitivity<T> {
         Self { aba: Aba::new(topology), crba: Crba::new(topology), ltdl: Ltdl::new(topology), regressor, matrix }
     }
 
-    /// The accelerations `a` at configuration `q`, velocity `v`, joint forces `tau` and external wrenches, and their derivatives.
+    /// The accelerations `a` at a state with joint forces, and their derivatives.
     ///
     /// # Errors
     /// [`Error`] when an argument or the workspace does not fit the model, or when a joint meets no inertia.
-    #[expect(clippy::too_many_arguments, reason = "a state, and two results")]
     #[inline(never)]
     pub fn run<P: Real + Lift<T>>(
         &mut self,
         model: &Model<P>,
-        q: &[T],
-        v: &[T],
-        tau: &[T],
-        wrenches: Option<&[Force<T>]>,
+        state: State<'_, T>,
         a: &mut [T],
         by_parameters: &mut [T],
     ) -> Result<(), Error> {
+        let State { q, v, given: tau, wrenches } = state;
         self.aba.run(model, q, v, tau, wrenches, a)?;
         self.regressor.torque(model, q, v, a, &mut self.matrix)?;
         self.matrix.write_dense(by_parameters)?;

@@ -24,9 +24,9 @@
 
 use super::columns::{Columns, deepest, lanes};
 use super::parameters::PARAMETERS;
-use super::sweep::{Link, State, Sweep};
-use crate::DimensionError;
+use super::sweep::{Link, Sweep};
 use crate::error::expect;
+use crate::{DimensionError, State};
 use featherbench_model::{Model, Topology};
 use featherbench_spatial::{Force, Lift, Mat3, Motion, Real, Vec3};
 use nalgebra::{DMatrix, Scalar};
@@ -184,7 +184,7 @@ impl<T: Real> Regressor<T> {
         a: &[T],
         regressor: &mut RegressorMatrix<T>,
     ) -> Result<(), DimensionError> {
-        self.sweep.run::<P, true, true>(model, State { q, v, a, wrenches: None, gravity: true })?;
+        self.sweep.run::<P, true, true>(model, State { q, v, given: a, wrenches: None })?;
         self.fill(model, regressor, |link, axes, _| torque_columns(link, axes))
     }
 
@@ -200,7 +200,7 @@ impl<T: Real> Regressor<T> {
         v: &[T],
         regressor: &mut RegressorMatrix<T>,
     ) -> Result<(), DimensionError> {
-        self.sweep.run::<P, true, false>(model, State { q, v, a: &[], wrenches: None, gravity: false })?;
+        self.sweep.run::<P, true, false>(model, State { q, v, given: &[], wrenches: None })?;
         self.fill(model, regressor, momentum_columns)
     }
 
@@ -220,7 +220,7 @@ impl<T: Real> Regressor<T> {
         let columns = PARAMETERS * model.described.len();
         expect("regressor of kinetic energy", columns, kinetic.len())?;
         expect("regressor of potential energy", columns, potential.len())?;
-        self.sweep.run::<P, true, false>(model, State { q, v, a: &[], wrenches: None, gravity: false })?;
+        self.sweep.run::<P, true, false>(model, State { q, v, given: &[], wrenches: None })?;
         let (mut origin, mut drift) = (Vec3::zero(), Vec3::zero());
         let (zero, half, g) = (T::zero(), T::from_f64(0.5), model.gravity.lift());
         let (mut kinetic, mut potential) = (kinetic.chunks_exact_mut(PARAMETERS), potential.chunks_exact_mut(PARAMETERS));

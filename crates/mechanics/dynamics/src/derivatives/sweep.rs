@@ -20,7 +20,7 @@
 
 use crate::DimensionError;
 use crate::error::expect;
-use crate::step::{by_kind, expect_bodies, expect_wrenches, slides, turns};
+use crate::step::{State, by_kind, expect_bodies, expect_wrenches, slides, turns};
 use featherbench_model::{Axis, JointKind, Model, Topology};
 use featherbench_spatial::{Force, Lift, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
 
@@ -106,19 +106,6 @@ fn in_frame<T: Real>(kind: JointKind, place: &Transform<T>, m: Motion<T>) -> Mot
     Motion::new(ang, lin)
 }
 
-/// What a state has, besides q. What is absent is zero, and costs nothing.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct State<'a, T> {
-    pub(super) q: &'a [T],
-    /// Velocity, if the sweep is `MOVING`.
-    pub(super) v: &'a [T],
-    /// Acceleration and wrenches, if the sweep is `FORCED`.
-    pub(super) a: &'a [T],
-    pub(super) wrenches: Option<&'a [Force<T>]>,
-    /// Whether gravity acts, if the sweep is `FORCED`.
-    pub(super) gravity: bool,
-}
-
 impl<T: Real> Sweep<T> {
     pub(super) fn new(topology: &Topology) -> Self {
         let still = Motion::zero();
@@ -128,7 +115,8 @@ impl<T: Real> Sweep<T> {
 
     /// Places the bodies, and sums over sub-trees.
     ///
-    /// Without `MOVING` all velocities are zero, and D and the momenta are not set. Without `FORCED` accelerations and forces are not set.
+    /// Without `MOVING` all velocities are zero, and D and the momenta are not set. Without `FORCED` accelerations and forces are not set, and
+    /// of the state only q and v are read. What is absent costs nothing.
     pub(super) fn run<P: Real + Lift<T>, const MOVING: bool, const FORCED: bool>(
         &mut self,
         model: &Model<P>,
@@ -141,7 +129,7 @@ impl<T: Real> Sweep<T> {
             expect("velocity v", nv, state.v.len())?;
         }
         if FORCED {
-            expect("acceleration a", nv, state.a.len())?;
+            expect("acceleration a", nv, state.given.len())?;
             expect_wrenches(&model.topology, state.wrenches)?;
         }
         let joints = model.topology.joints();
@@ -205,10 +193,9 @@ fn outward<T: Real, P: Real + Lift<T>, const MOVING: bool, const FORCED: bool>(
     if FORCED {
         link.parent_a = match parent {
             Some(parent) => parent.a,
-            None if state.gravity => Motion::new(Vec3::zero(), -model.gravity.lift()),
-            None => Motion::zero(),
+            None => Motion::new(Vec3::zero(), -model.gravity.lift()),
         };
-        link.a = link.parent_a + in_frame(kind, &link.place, kind.motion(subspace, &state.a[joint.v..]));
+        link.a = link.parent_a + in_frame(kind, &link.place, kind.motion(subspace, &state.given[joint.v..]));
         let mut force = Force::zero();
         if MOVING {
             link.a += link.v.cross_motion(across);

@@ -113,7 +113,7 @@ impl<T: Angle> DormandPrince<T> {
     ///     Ok(())
     /// };
     /// let (mut q, mut v) = ([1.0], [0.0]);
-    /// let statistics = DormandPrince::new(&slider).run(&mut spring, 0.0, 1.0, &mut q, &mut v, &Tolerance::default(), |_, _, _| ())?;
+    /// let statistics = DormandPrince::new(&slider).run(&mut spring, [0.0, 1.0], &mut q, &mut v, &Tolerance::default(), |_, _, _| ())?;
     /// assert!((q[0] - 1.0_f64.cos()).abs() < 1e-8 && (v[0] + 1.0_f64.sin()).abs() < 1e-8);
     /// assert!(statistics.accepted < 60);
     /// # Ok::<(), featherbench_dynamics::integrate::IntegrationError>(())
@@ -121,12 +121,10 @@ impl<T: Angle> DormandPrince<T> {
     ///
     /// # Errors
     /// [`IntegrationError`]; the state is then that after the last accepted step.
-    #[expect(clippy::too_many_arguments, reason = "the interval, the state, and how to go")]
     pub fn run<F: Acceleration<T>>(
         &mut self,
         f: &mut F,
-        from: T,
-        to: T,
+        [from, to]: [T; 2],
         q: &mut [T],
         v: &mut [T],
         tolerance: &Tolerance,

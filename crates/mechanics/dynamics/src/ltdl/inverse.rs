@@ -76,6 +76,7 @@ fn rows_of_inverse<const SIZE: usize, const WIDE: usize, const SELECTED: bool>(
     let begin = if SELECTED { shared } else { block.first };
     let starts: [usize; SIZE] = starts(rows, block);
     let l = triangle(values, &starts, shared);
+    let factors = Rows { matrix, block, starts };
 
     // X_kc = −Σ_j L_kj X_jc for columns c left of the block
     let mut column = 0;
@@ -87,11 +88,11 @@ fn rows_of_inverse<const SIZE: usize, const WIDE: usize, const SELECTED: bool>(
         column = begin;
     }
     while column + WIDE * LANES <= begin {
-        columns::<SIZE, WIDE, SELECTED>(matrix, block, &starts, &l, inverse, n, column, LANES);
+        columns::<SIZE, WIDE, SELECTED>(&factors, &l, inverse, n, column, LANES);
         column += WIDE * LANES;
     }
     while column < begin {
-        columns::<SIZE, 1, SELECTED>(matrix, block, &starts, &l, inverse, n, column, LANES.min(begin - column));
+        columns::<SIZE, 1, SELECTED>(&factors, &l, inverse, n, column, LANES.min(begin - column));
         column += LANES;
     }
     // X_jk = X_kj for ancestors j of the block
@@ -102,7 +103,7 @@ fn rows_of_inverse<const SIZE: usize, const WIDE: usize, const SELECTED: bool>(
         }
     }
     // the block itself: X_ks = [k = s] / D_k − Σ_j L_kj X_js for s ≤ k
-    let sums: [[f64x8; 1]; SIZE] = sums::<SIZE, 1, SELECTED>(matrix, block, &starts, inverse, n, begin);
+    let sums: [[f64x8; 1]; SIZE] = sums::<SIZE, 1, SELECTED>(&factors, inverse, n, begin);
     let mut x = sums.map(|[sum]| sum.to_array());
     up!(k < SIZE {
         x[k][k] += 1.0 / l[k][k];
@@ -118,21 +119,25 @@ fn rows_of_inverse<const SIZE: usize, const WIDE: usize, const SELECTED: bool>(
     }
 }
 
+/// A block's rows of the factors, and where they begin.
+struct Rows<'a, const SIZE: usize> {
+    matrix: &'a TreeSparse<f64>,
+    block: &'a Block,
+    starts: [usize; SIZE],
+}
+
 /// The rows of a block in some registers of columns, of which the last is written in `count` lanes.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "the factors, the block, the array and the place in it")]
 fn columns<const SIZE: usize, const WIDE: usize, const SELECTED: bool>(
-    matrix: &TreeSparse<f64>,
-    block: &Block,
-    starts: &[usize; SIZE],
+    factors: &Rows<'_, SIZE>,
     l: &[[f64; LANES]; SIZE],
     inverse: &mut [f64],
     n: usize,
     column: usize,
     count: usize,
 ) {
-    let mut x: [[f64x8; WIDE]; SIZE] = sums::<SIZE, WIDE, SELECTED>(matrix, block, starts, inverse, n, column);
-    let begin = if SELECTED { block.shared } else { block.first };
+    let mut x: [[f64x8; WIDE]; SIZE] = sums::<SIZE, WIDE, SELECTED>(factors, inverse, n, column);
+    let begin = if SELECTED { factors.block.shared } else { factors.block.first };
     up!(k < SIZE {
         up!(j < k {
             let (above, rest) = x.split_at_mut(k);
@@ -159,13 +164,12 @@ fn columns<const SIZE: usize, const WIDE: usize, const SELECTED: bool>(
 /// `−Σ_j L_kj X_jc` over the strict ancestors j of a block, for its dofs k and some registers of columns c.
 #[inline(always)]
 fn sums<const SIZE: usize, const WIDE: usize, const SELECTED: bool>(
-    matrix: &TreeSparse<f64>,
-    block: &Block,
-    starts: &[usize; SIZE],
+    factors: &Rows<'_, SIZE>,
     inverse: &[f64],
     n: usize,
     column: usize,
 ) -> [[f64x8; WIDE]; SIZE] {
+    let Rows { matrix, block, starts } = factors;
     let values = matrix.values();
     let mut sums = [[f64x8::ZERO; WIDE]; SIZE];
     for (dofs, entries) in matrix.ancestors(block.first) {

@@ -14,7 +14,7 @@
 //! four lists of slices, with one entry per task each.
 
 use super::{Part, Piece, Plan, Task};
-use crate::crba::{Forces, column_force, expect_shapes, project};
+use crate::crba::{Forces, Rows, column_force, expect_shapes, project};
 use crate::step::by_kind;
 use crate::tree_sparse::Row;
 use crate::{DimensionError, TreeSparse};
@@ -231,8 +231,8 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
                     for dof in own.clone() {
                         forces.set(dof - task.dofs.start, Force::zero());
                     }
-                    let supported = own.start..self.rows[own.start].end.min(task.dofs.end);
-                    self.carry(index, &supported, true, task, forces, values, start);
+                    let rows = &self.rows[own.start..self.rows[own.start].end.min(task.dofs.end)];
+                    self.carry(index, Supported { first: own.start - task.dofs.start, rows, own: true }, forces, values, start);
                 }
             }
         }
@@ -240,7 +240,7 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
         let mut above = topology.joints()[task.bodies.start].parent;
         while let Some(index) = above {
             let end = self.rows[dofs(topology, index).start].end.min(task.dofs.end);
-            self.carry(index, &(task.dofs.start..end), false, task, forces, values, start);
+            self.carry(index, Supported { first: 0, rows: &self.rows[task.dofs.start..end], own: false }, forces, values, start);
             above = topology.joints()[index].parent;
         }
         for dof in plan.parts[task.parts.clone()].iter().flat_map(|part| part.dofs.clone()) {
@@ -249,25 +249,12 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
     }
 
     /// The entries of a task's dofs in the columns of a body of the trunk. Then their forces go to its parent.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a body's step reads and carries the forces, and writes into rows of a part of the matrix"
-    )]
-    fn carry(
-        &self,
-        index: usize,
-        supported: &Range<usize>,
-        own: bool,
-        task: &Task,
-        forces: &mut Forces<T>,
-        values: &mut [T],
-        start: usize,
-    ) {
-        let first = supported.start - task.dofs.start;
-        self.set_columns(index, forces, Supported { first, rows: &self.rows[supported.clone()], own }, values, start);
+    fn carry(&self, index: usize, supported: Supported<'_>, forces: &mut Forces<T>, values: &mut [T], start: usize) {
+        let dofs = supported.first..supported.first + supported.rows.len();
+        self.set_columns(index, forces, supported, values, start);
         let place = self.trunk.binary_search_by_key(&index, |body| body.index);
         if let Some(body) = place.ok().map(|place| &self.trunk[place]).filter(|body| body.parent.is_some()) {
-            forces.carry_to_parent(&body.x, first..supported.end - task.dofs.start);
+            forces.carry_to_parent(&body.x, dofs);
         }
     }
 
@@ -308,7 +295,8 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
             let skipped = if supported.own { column } else { 0 };
             let (first, rows) = (supported.first + skipped, &supported.rows[skipped..]);
             let position = self.model.topology.dof_depth(joint.v + column) - 1;
-            by_kind!(T, joint.kind, project, forces, first, subspace, column, rows, position, values, start);
+            let into = Rows { rows, values: &mut *values, start };
+            by_kind!(T, joint.kind, project, forces, first, subspace, column, position, into);
         }
     }
 }

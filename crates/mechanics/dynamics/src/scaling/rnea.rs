@@ -15,8 +15,8 @@
 
 use super::{Part, Piece, Plan};
 use crate::error::expect;
-use crate::rnea::{Link, Moving, expect_shapes, outward};
-use crate::step::{by_kind, expect_workspace};
+use crate::rnea::{Inputs, Link, Moving};
+use crate::step::expect_workspace;
 use crate::{DimensionError, Rnea};
 use featherbench_model::{Joint, Model, Topology};
 use featherbench_spatial::{Force, Lift, Motion, Real, Vec3};
@@ -50,15 +50,6 @@ pub struct ParallelRnea<T> {
     paths: Vec<Vec<Moving<T>>>,
 }
 
-/// What a step reads.
-struct Inputs<'a, P, T> {
-    model: &'a Model<P>,
-    q: &'a [T],
-    v: &'a [T],
-    a: &'a [T],
-    wrenches: Option<&'a [Force<T>]>,
-}
-
 impl<T: Real> ParallelRnea<T> {
     /// A workspace for models of this topology.
     pub fn new(topology: &Topology) -> Self {
@@ -84,16 +75,16 @@ impl<T: Real> ParallelRnea<T> {
     ) -> Result<(), DimensionError> {
         expect("acceleration a", model.topology.nv(), a.len())?;
         expect_workspace(model, self.rnea.links.len(), self.rnea.path.len())?;
-        expect_shapes(model, q, v, wrenches, tau)?;
+        let inputs = Inputs { model, q, v, a, wrenches };
+        inputs.expect_shapes(tau)?;
         self.plan.expect(&model.topology)?;
         let Self { plan, rnea: Rnea { links, path }, parents, paths } = self;
         let joints = model.topology.joints();
-        let inputs = Inputs { model, q, v, a, wrenches };
 
         path[0] = Moving { omega: Vec3::zero(), a: Motion::new(Vec3::zero(), -model.gravity.lift()) };
         for piece in &plan.order {
             match *piece {
-                Piece::Trunk(i) => inputs.outward(i, path, &mut links[i]),
+                Piece::Trunk(i) => inputs.move_body(i, path, &mut links[i]),
                 Piece::Part(k) => parents[k] = (path[joints[plan.parts[k].bodies.start].parent_slot], Force::zero()),
             }
         }
@@ -128,13 +119,9 @@ impl<T: Real> ParallelRnea<T> {
 }
 
 impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
-    /// The outward step of one body.
-    fn outward(&self, i: usize, path: &mut [Moving<T>], link: &mut Link<T>) {
-        let Self { model, q, v, a, .. } = *self;
-        by_kind!(T, model.topology.joints()[i].kind, outward::<T, P, true>, model, i, q, v, a, path, link);
-        if let Some(wrenches) = self.wrenches {
-            link.f -= model.labels[i].force_to_compiled(wrenches[i]);
-        }
+    /// The outward step of one body, of which trunk and parts share one copy.
+    fn move_body(&self, i: usize, path: &mut [Moving<T>], link: &mut Link<T>) {
+        self.outward::<true>(i, path, link);
     }
 
     /// The inward step of one body: `τ_i = Sᵀ f_i + armature q̈_i`, `f_p += X* f_i`. `tau` begins with the joint's dofs.
@@ -155,7 +142,7 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
         let joints = &self.model.topology.joints()[part.bodies.clone()];
         path[joints[0].parent_slot] = parent.0;
         for (k, link) in links[..joints.len()].iter_mut().enumerate() {
-            self.outward(root + k, path, link);
+            self.move_body(root + k, path, link);
         }
         for (k, joint) in joints.iter().enumerate().rev() {
             let (before, rest) = links.split_at_mut(k);

@@ -222,11 +222,11 @@ impl<P: Real + Lift<T>, T: Real> Side<'_, P, T> {
 
     /// Stage 1 of the base side.
     fn move_base(&self, base: &mut [Braced<T>]) {
-        let Inputs { model, q, v, wrenches, .. } = self.inputs;
+        let Inputs { model, wrenches, .. } = self.inputs;
         let (mut parent_omega, mut parent_com) = (Vec3::zero(), Vec3::zero());
         for (i, body) in base.iter_mut().enumerate() {
             let kind = model.topology.joints()[i].kind;
-            by_kind!(T, kind, move_braced, model, i, parent_omega, parent_com, q, v, body);
+            by_kind!(T, kind, move_braced, &self.inputs, i, parent_omega, parent_com, body);
             if let Some(wrenches) = wrenches {
                 let wrench = model.labels[i].force_to_compiled(wrenches[i]);
                 body.p -= Force::new(wrench.ang - body.inertia.com.cross(wrench.lin), wrench.lin);
@@ -238,8 +238,7 @@ impl<P: Real + Lift<T>, T: Real> Side<'_, P, T> {
     /// Stage 1 of the tip side.
     fn place_tip(&self, tip: &mut [Link<T>]) {
         for (link, i) in tip.iter_mut().zip(self.cut..) {
-            let Inputs { model, q, .. } = self.inputs;
-            let _ = by_kind!(T, model.topology.joints()[i].kind, place, model, i, q, link);
+            let _ = by_kind!(T, self.inputs.model.topology.joints()[i].kind, place, &self.inputs, i, link);
         }
     }
 
@@ -265,11 +264,11 @@ impl<P: Real + Lift<T>, T: Real> Side<'_, P, T> {
 
     /// Stage 2 of the tip side. The path begins with ω of the body before, and ends with Iᴬ of body m.
     fn eliminate_tip(&self, tip: &mut [Link<T>], path: &mut [OnPath<T>; 2], smallest: &mut Pivot) {
-        let Inputs { model, v, .. } = self.inputs;
+        let model = self.inputs.model;
         for (i, link) in (self.cut..).zip(&mut *tip) {
             let kind = model.topology.joints()[i].kind;
             let x = kind.recall(&model.placements[i], &link.x);
-            by_kind!(T, kind, set_velocity, model, i, &x, v, path, link);
+            by_kind!(T, kind, set_velocity, &self.inputs, i, &x, path, link);
             self.inputs.subtract_wrench(i, link);
         }
         // If body m is the last, nothing is added to it.
@@ -332,17 +331,15 @@ impl<P: Real + Lift<T>, T: Real> Side<'_, P, T> {
 
 /// Stage 1 of one body of the base side.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes the body")]
 fn move_braced<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
-    model: &Model<P>,
+    inputs: &Inputs<'_, P, T>,
     i: usize,
     parent_omega: Vec3<T>,
     parent_com: Vec3<T>,
-    q: &[T],
-    v: &[T],
     body: &mut Braced<T>,
 ) {
+    let Inputs { model, q, v, .. } = *inputs;
     let (joint, subspace) = (&model.topology.joints()[i], &model.subspaces[i]);
     let inertia = model.inertias[i].lift::<T>().central();
     let Transform { rotation, translation } = kind.transform(&model.placements[i], subspace, &q[joint.q..]);

@@ -24,7 +24,7 @@ fn run(model: &Model<f64>, states: &StateBatch, [from, to]: [f64; 2], at: f64) -
     let tolerance = Tolerance { absolute: at, relative: at, ..Tolerance::default() };
     let mut f = Dynamics::new(model, Passive, &[]).unwrap();
     let mut integrator = DormandPrince::new(&model.topology);
-    let statistics = integrator.run(&mut f, from, to, &mut q, &mut v, &tolerance, |h, _, _| steps.push(h)).unwrap();
+    let statistics = integrator.run(&mut f, [from, to], &mut q, &mut v, &tolerance, |h, _, _| steps.push(h)).unwrap();
     (q, v, statistics, steps)
 }
 
@@ -87,7 +87,7 @@ fn lanes_go_together() {
     let mut f = Dynamics::new(&model, Passive, &[]).unwrap();
     let tolerance = Tolerance { absolute: 1e-9, relative: 1e-9, ..Tolerance::default() };
     let (zero, end) = (f64x4::splat(0.0), f64x4::splat(0.3));
-    DormandPrince::new(&model.topology).run(&mut f, zero, end, &mut q, &mut v, &tolerance, |_, _, _| ()).unwrap();
+    DormandPrince::new(&model.topology).run(&mut f, [zero, end], &mut q, &mut v, &tolerance, |_, _, _| ()).unwrap();
     let (alone_q, alone_v, _, _) = run(&model, &states, [0.0, 0.3], 1e-12);
     let first = |x: &[f64x4]| x.iter().map(|x| x.to_array()[0]).collect::<Vec<_>>();
     let error = larger(largest(&difference(&model.topology, &alone_q, &first(&q)).unwrap()), distance(&first(&v), &alone_v));
@@ -104,7 +104,7 @@ fn what_cannot_be_integrated_is_an_error() {
     let mut go = |f: &mut Acceleration, tolerance: &Tolerance, start: f64| {
         let (mut q, mut v) = ([start], [0.0]);
         let mut f = |t: f64, q: &[f64], v: &[f64], a: &mut [f64]| f(t, q, v, a);
-        (integrator.run(&mut f, 0.0, 2.0, &mut q, &mut v, tolerance, |_, _, _| ()), q, v)
+        (integrator.run(&mut f, [0.0, 2.0], &mut q, &mut v, tolerance, |_, _, _| ()), q, v)
     };
     // q̈ = 6 q², q = 1/(1 − t)²-like: infinite in finite time.
     let mut blow_up = |_: f64, q: &[f64], _: &[f64], a: &mut [f64]| {

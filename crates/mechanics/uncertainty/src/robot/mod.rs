@@ -303,7 +303,8 @@ impl RobotResponse {
             Quantity::Acceleration => {
                 let force: Vec<f64> = drive.iter().zip(&losses).map(|(tau, loss)| tau - loss).collect();
                 let mut a = vec![0.0; nv];
-                ParameterSensitivity::new(&model).run(&model, q, v, &force, None, &mut a, &mut by_parameters)?;
+                let state = featherbench_dynamics::State { q, v, given: &force, wrenches: None };
+                ParameterSensitivity::new(&model).run(&model, state, &mut a, &mut by_parameters)?;
                 let factors = mass_matrix(&model, q)?.into_ltdl().map_err(featherbench_dynamics::Error::from)?;
                 (a.clone(), a, DMatrix::from_row_slice(nv, nv, &factors.dense_inverse()) * -1.0)
             }

@@ -54,7 +54,7 @@ fn free(name: &'static str, n: usize) -> Case {
         };
         let (before, energy) = state(&s, &rate)?;
         let mut motion = Motion::new(&robot, |_| Vec::new());
-        DormandPrince::new(topology).run(&mut motion, 0.0, 0.5, &mut s, &mut rate, &tolerance(), |_, _, _| ()).map_err(failed)?;
+        DormandPrince::new(topology).run(&mut motion, [0.0, 0.5], &mut s, &mut rate, &tolerance(), |_, _, _| ()).map_err(failed)?;
         let (after, left) = state(&s, &rate)?;
         let moved = before.iter().zip(&after).flat_map(|(a, b)| (*b - *a).to_array());
         let size = largest(before.iter().flat_map(|part| part.to_array()));
@@ -86,7 +86,7 @@ fn flying(name: &'static str, n: usize) -> Case {
             let t = h * f64::from(step);
             let first = arm(t, &s)?;
             let mut to = |from: f64, to: f64, s: &mut [f64], rate: &mut [f64]| {
-                method.run(&mut motion, from, to, s, rate, &tolerance(), |_, _, _| ()).map_err(failed)
+                method.run(&mut motion, [from, to], s, rate, &tolerance(), |_, _, _| ()).map_err(failed)
             };
             to(t, t + 0.5 * h, &mut s, &mut rate)?;
             let middle = arm(t + 0.5 * h, &s)?;

@@ -63,7 +63,7 @@ fn damped(name: &'static str, terms: usize) -> Case {
             }
             last = now;
         };
-        DormandPrince::new(beam.topology()).run(&mut motion, 0.0, TIME, &mut s, &mut rate, &tolerance, seen).map_err(failed)?;
+        DormandPrince::new(beam.topology()).run(&mut motion, [0.0, TIME], &mut s, &mut rate, &tolerance, seen).map_err(failed)?;
         Ok(vec![rise, last / first])
     })
 }

@@ -132,7 +132,7 @@ fn falling(time: f64) -> Case {
         let mut motion = Motion::new(&robot, |_| Vec::new());
         if time > 0.0 {
             DormandPrince::new(robot.topology())
-                .run(&mut motion, 0.0, time, &mut s, &mut rate, &tolerance, |_, _, _| ())
+                .run(&mut motion, [0.0, time], &mut s, &mut rate, &tolerance, |_, _, _| ())
                 .map_err(failed)?;
         }
         let places = robot.shape(&s).map_err(failed)?;

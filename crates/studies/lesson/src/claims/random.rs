@@ -6,7 +6,7 @@
 use crate::arm::Arm;
 use crate::claim::{Claim, Failure, Holds, Number};
 use crate::quadrature::{Rule, simpson};
-use featherbench_dynamics::{ParameterSensitivity, inertial_parameters};
+use featherbench_dynamics::{ParameterSensitivity, State, inertial_parameters};
 use featherbench_model::Model;
 use featherbench_spatial::{DoubleDouble, Dual, Real};
 use std::f64::consts::TAU;
@@ -146,7 +146,8 @@ fn sensitivities(arm: &Arm) -> Result<Vec<Number>, Failure> {
     };
     let nominal = model(arm.masses)?;
     let (mut a, mut by_parameters) = ([0.0; 2], [0.0; 40]);
-    ParameterSensitivity::new(&nominal).run(&nominal, &arm.q, &arm.v, &arm.tau, None, &mut a, &mut by_parameters)?;
+    let state = State { q: &arm.q, v: &arm.v, given: &arm.tau, wrenches: None };
+    ParameterSensitivity::new(&nominal).run(&nominal, state, &mut a, &mut by_parameters)?;
     let mut numbers = Vec::new();
     for body in 0..2 {
         // Parameters are linear in the mass: their derivative is a difference over one kilogramme.
