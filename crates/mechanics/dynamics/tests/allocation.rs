@@ -4,7 +4,7 @@
 
 use crate::common;
 
-use common::{ROBOTS, build, wrenches};
+use common::{ROBOTS, build, describe, wrenches};
 use featherbench_dynamics::integrate::{
     Adjoint, Analytic, ByDuals, Cost, CostGradient, DormandPrince, Forward, ImplicitMidpoint, Motors, Rollout, RungeKutta4,
     SymplecticEuler, Tolerance, Visit,
@@ -16,7 +16,7 @@ use featherbench_dynamics::{
     Refined, Regressor, RegressorMatrix, Rnea, State, TreePair, TreeSparse, Twisted, mass_matrix, to_lanes,
 };
 use featherbench_model::Model;
-use featherbench_robots::{Family, StateBatch};
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{Compensated, DoubleDouble, Vec3};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -320,7 +320,7 @@ fn held<X>(make: impl FnOnce() -> X) -> (i64, X) {
 #[test]
 fn memory_per_joint_is_what_the_documentation_says() {
     let sizes = |n: i64| -> Vec<(&'static str, i64)> {
-        let robot = Family::parse(&format!("chain:n={n},layout=spatial")).unwrap().generate().unwrap();
+        let robot = describe(&format!("chain:n={n},layout=spatial"));
         let (model_bytes, model) = held(|| Model::<f64>::build(&robot).unwrap());
         let t = &model.topology;
         vec![

@@ -2,14 +2,14 @@
 
 use crate::common;
 
+use common::batched::{Asked, Quantity::*, States, bits, dynamics, in_lanes, in_rows, one_by_one, refined, relative, size};
 use common::{ROBOTS, Recipe, build, dyadic_chain, robot, within};
 use featherbench_dynamics::{
-    Aba, Batch, BatchError, Bias, Cause, Crba, DimensionError, Failure, Ltdl, NotPositiveDefinite, Number, Refined, Rnea, Sampled, Sharing,
-    forward_dynamics, refined_forward_dynamics, to_lanes, to_rows,
+    Batch, BatchError, Cause, DimensionError, Failure, NotPositiveDefinite, Number, Sampled, forward_dynamics, refined_forward_dynamics,
+    to_lanes, to_rows,
 };
 use featherbench_model::{JointKind, Model};
-use featherbench_robots::StateBatch;
-use featherbench_spatial::{Compensated, Force, Lift, RigidBodyInertia};
+use featherbench_spatial::{Lift, RigidBodyInertia};
 
 /// States in a batch: fewer than a group, one group, one more, and several.
 const COUNTS: [usize; 6] = [0, 1, 7, 8, 9, 17];
@@ -17,158 +17,26 @@ const COUNTS: [usize; 6] = [0, 1, 7, 8, 9, 17];
 /// The roundings in which lanes may differ from single states; [`lanes_are_as_single_states`] says why.
 const ROUNDINGS: f64 = 120.0;
 
-/// What a batch computes, in the order of the lists below.
-const QUANTITIES: [&str; 11] = [
-    "inverse dynamics",
-    "inverse dynamics, wrenches",
-    "bias force",
-    "bias force, wrenches",
-    "forward dynamics",
-    "forward dynamics, wrenches",
-    "mass matrix",
-    "factors",
-    "solution",
-    "refined",
-    "refined, wrenches",
+const ASKED: [Asked; 11] = [
+    (InverseDynamics, false),
+    (InverseDynamics, true),
+    (Bias, false),
+    (Bias, true),
+    (ForwardDynamics, false),
+    (ForwardDynamics, true),
+    (MassMatrix, false),
+    (Factors, false),
+    (Solution, false),
+    (Refined, false),
+    (Refined, true),
 ];
 
-/// Steps of refinement. In single precision the plain algorithm keeps four digits of some robots.
-const STEPS: usize = 3;
-
-/// What every quantity is computed from, in row order. The right-hand sides of solutions are τ.
-#[derive(Clone)]
-struct States<S> {
-    q: Vec<S>,
-    v: Vec<S>,
-    a: Vec<S>,
-    tau: Vec<S>,
-    /// External wrenches, six numbers per body.
-    wrenches: Vec<S>,
-}
-
-impl<S: Number> States<S> {
-    fn random(model: &Model<f64>, count: usize) -> Self {
-        let states = StateBatch::random(model, count, 3);
-        let single = |numbers: &[f64]| -> Vec<S> { numbers.iter().map(|&x| S::from_f64(x)).collect() };
-        let wrenches: Vec<f64> = (0..count as u64).flat_map(|seed| common::wrenches(model, seed)).flat_map(|f| f.to_array()).collect();
-        let [q, v, a, tau, wrenches] = [&states.q, &states.v, &states.a, &states.tau, &wrenches].map(|numbers| single(numbers));
-        Self { q, v, a, tau, wrenches }
-    }
-}
-
-/// Each quantity's name, numbers per state and results, in row order.
-type Answers<S> = Vec<(&'static str, usize, Vec<S>)>;
-
-/// Each quantity's name, what the call returned, and the results in row order.
-type Outcome<S> = Vec<(&'static str, Result<(), BatchError>, Vec<S>)>;
-
-/// A call of a batch, which writes to this array.
-type Call<'a, E> = dyn FnMut(&mut [E]) -> Result<(), BatchError> + 'a;
-
-fn in_rows<S: Number, M: Sharing>(batch: &mut Batch<'_, S, M>, model: &Model<S>, states: &States<S>) -> Outcome<S> {
-    let States { q, v, a, tau, wrenches } = states;
-    let f = Some(&wrenches[..]);
-    let t = &model.topology;
-    let (vectors, matrices) = (vec![S::zero(); v.len()], vec![S::zero(); v.len() / t.nv() * t.stored()]);
-    let with = |mut out: Vec<S>, name, run: &mut Call<S>| {
-        let done = run(&mut out);
-        (name, done, out)
-    };
-    vec![
-        with(vectors.clone(), "inverse dynamics", &mut |out| batch.inverse_dynamics(q, v, a, None, out)),
-        with(vectors.clone(), "inverse dynamics, wrenches", &mut |out| batch.inverse_dynamics(q, v, a, f, out)),
-        with(vectors.clone(), "bias force", &mut |out| batch.bias_force(q, v, None, out)),
-        with(vectors.clone(), "bias force, wrenches", &mut |out| batch.bias_force(q, v, f, out)),
-        with(vectors.clone(), "forward dynamics", &mut |out| batch.forward_dynamics(q, v, tau, None, out)),
-        with(vectors.clone(), "forward dynamics, wrenches", &mut |out| batch.forward_dynamics(q, v, tau, f, out)),
-        with(matrices.clone(), "mass matrix", &mut |out| batch.mass_matrix(q, out)),
-        with(matrices.clone(), "factors", &mut |out| batch.factors(q, out)),
-        with(vectors.clone(), "solution", &mut |out| batch.solve(q, tau, out)),
-        with(vectors.clone(), "refined", &mut |out| batch.refined_forward_dynamics(q, v, tau, None, STEPS, out)),
-        with(vectors.clone(), "refined, wrenches", &mut |out| batch.refined_forward_dynamics(q, v, tau, f, STEPS, out)),
-    ]
-}
-
-/// The same through arrays in lane order.
-fn in_lanes<S: Number, M: Sharing>(batch: &mut Batch<'_, S, M>, model: &Model<S>, states: &States<S>) -> Outcome<S> {
-    let t = &model.topology;
-    let count = states.v.len() / t.nv();
-    let lanes = |rows: &[S], each| to_lanes(rows, each).unwrap();
-    let (q, v) = (lanes(&states.q, t.nq()), lanes(&states.v, t.nv()));
-    let (a, tau) = (lanes(&states.a, t.nv()), lanes(&states.tau, t.nv()));
-    let wrenches = lanes(&states.wrenches, 6 * t.bodies());
-    let f = Some(&wrenches[..]);
-    let groups = count.div_ceil(S::LANES);
-    let with = |each, name, run: &mut Call<S::Lanes>| {
-        let mut out = lanes(&vec![S::zero(); groups * S::LANES * each], each);
-        let done = run(&mut out);
-        (name, done, to_rows(&out, each, count).unwrap())
-    };
-    vec![
-        with(t.nv(), "inverse dynamics", &mut |out| batch.inverse_dynamics(&q, &v, &a, None, out)),
-        with(t.nv(), "inverse dynamics, wrenches", &mut |out| batch.inverse_dynamics(&q, &v, &a, f, out)),
-        with(t.nv(), "bias force", &mut |out| batch.bias_force(&q, &v, None, out)),
-        with(t.nv(), "bias force, wrenches", &mut |out| batch.bias_force(&q, &v, f, out)),
-        with(t.nv(), "forward dynamics", &mut |out| batch.forward_dynamics(&q, &v, &tau, None, out)),
-        with(t.nv(), "forward dynamics, wrenches", &mut |out| batch.forward_dynamics(&q, &v, &tau, f, out)),
-        with(t.stored(), "mass matrix", &mut |out| batch.mass_matrix(&q, out)),
-        with(t.stored(), "factors", &mut |out| batch.factors(&q, out)),
-        with(t.nv(), "solution", &mut |out| batch.solve(&q, &tau, out)),
-        with(t.nv(), "refined", &mut |out| batch.refined_forward_dynamics(&q, &v, &tau, None, STEPS, out)),
-        with(t.nv(), "refined, wrenches", &mut |out| batch.refined_forward_dynamics(&q, &v, &tau, f, STEPS, out)),
-    ]
-}
-
 /// The kernels state by state; state k has model `model(k)`.
-fn one_by_one<'m, S: Number>(model: impl Fn(usize) -> &'m Model<S>, states: &States<S>) -> Answers<S> {
-    let t = &model(0).topology;
-    let (nq, nv) = (t.nq(), t.nv());
-    let mut answers: Answers<S> = QUANTITIES
-        .into_iter()
-        .map(|name| (name, if matches!(name, "mass matrix" | "factors") { t.stored() } else { nv }, Vec::new()))
-        .collect();
-    let mut out = vec![S::zero(); nv];
-    for k in 0..states.v.len() / nv {
-        let part = |array: &'_ [S], each| array[k * each..][..each].to_vec();
-        let (q, v, a, tau) = (part(&states.q, nq), part(&states.v, nv), part(&states.a, nv), part(&states.tau, nv));
-        let numbers = part(&states.wrenches, 6 * t.bodies());
-        let wrenches: Vec<Force<S>> = numbers.as_chunks().0.iter().map(|f| Force::from_array(*f)).collect();
-        for (place, f) in [None, Some(&wrenches[..])].into_iter().enumerate() {
-            Rnea::new(t).run(model(k), &q, &v, &a, f, &mut out).unwrap();
-            answers[place].2.extend(&out);
-            Bias::new(t).run(model(k), &q, &v, f, &mut out).unwrap();
-            answers[2 + place].2.extend(&out);
-            Aba::new(t).run(model(k), &q, &v, &tau, f, &mut out).unwrap();
-            answers[4 + place].2.extend(&out);
-            Refined::<Compensated<S>, S>::new(t, STEPS).run(model(k), &q, &v, &tau, f, &mut out).unwrap();
-            answers[9 + place].2.extend(&out);
-        }
-        let mut ltdl = Ltdl::new(t);
-        Crba::new(t).run(model(k), &q, ltdl.matrix_mut()).unwrap();
-        answers[6].2.extend(ltdl.factors().values());
-        ltdl.factor().unwrap();
-        answers[7].2.extend(ltdl.factors().values());
-        out.copy_from_slice(&tau);
-        ltdl.solve(&mut out).unwrap();
-        answers[8].2.extend(&out);
-    }
-    answers
-}
-
-/// The largest difference of two lists, relative to the largest number of the state.
-fn relative<S: Number>(each: usize, found: &[S], truth: &[S]) -> f64 {
-    assert_eq!(found.len(), truth.len());
-    let mut worst = 0.0;
-    for (found, truth) in found.chunks(each).zip(truth.chunks(each)) {
-        let wide = |x: &[S]| -> Vec<f64> { x.iter().map(|x| x.min_lane()).collect() };
-        worst = common::larger(worst, common::distance(&wide(found), &wide(truth)) / common::largest(&wide(truth)));
-    }
-    worst
-}
-
-/// The bits of results, and which calls succeeded.
-fn bits<S: Number>(outcome: &Outcome<S>) -> Vec<(bool, Vec<u64>)> {
-    outcome.iter().map(|(_, done, out)| (done.is_ok(), out.iter().map(|x| x.min_lane().to_bits()).collect())).collect()
+fn truth<'m, S: Number>(model: impl Fn(usize) -> &'m Model<S>, states: &States<S>, asked: Asked) -> Vec<f64> {
+    one_by_one(states, &model(0).topology, |k| match asked {
+        (Refined, forced) => refined(model(k), states, k, forced),
+        _ => dynamics::<S, S>(model(k), states, k, asked),
+    })
 }
 
 fn lanes_are_as_single_states<S: Number>(precision: f64)
@@ -183,25 +51,25 @@ where
         let (mut batch, mut parallel) = (Batch::<S>::new(&model), Batch::<S>::new(&model).on_all_cores());
         for count in COUNTS {
             let states = States::random(&wide, count);
-            let outcome = in_rows(&mut batch, &model, &states);
-            assert_eq!(bits(&outcome), bits(&in_lanes(&mut batch, &model, &states)), "{name}, {count}: the order of the arrays");
-            assert_eq!(bits(&outcome), bits(&in_rows(&mut parallel, &model, &states)), "{name}, {count}: the cores");
-            assert_eq!(bits(&outcome), bits(&in_lanes(&mut parallel, &model, &states)), "{name}, {count}: cores and order");
-            for ((quantity, done, found), (_, each, truth)) in outcome.iter().zip(one_by_one(|_| &model, &states)) {
-                assert_eq!(done, &Ok(()), "{name}, {quantity}, {count}");
-                let what = format!("{name}, {quantity}, {count} states");
+            let outcome = in_rows(&mut batch, &model, &ASKED, &states);
+            assert_eq!(bits(&outcome), bits(&in_lanes(&mut batch, &model, &ASKED, &states)), "{name}, {count}: the order of the arrays");
+            assert_eq!(bits(&outcome), bits(&in_rows(&mut parallel, &model, &ASKED, &states)), "{name}, {count}: the cores");
+            assert_eq!(bits(&outcome), bits(&in_lanes(&mut parallel, &model, &ASKED, &states)), "{name}, {count}: cores and order");
+            for (asked, done, found) in &outcome {
+                let what = format!("{name}, {asked:?}, {count} states");
+                assert_eq!(done, &Ok(()), "{what}");
                 // Without a sine or cosine the operations are the same. The sines and cosines of the two libraries differ by at most 3
                 // units in the last place: six roundings for each joint. There are 20 joints at most. Rarely do all add up: the worst of
                 // these robots is half of that. A single matrix in doubles is factored with reciprocals in registers: one unit in the last
                 // place per entry of L, which is two roundings for each joint.
-                let tolerance = match *quantity {
+                let tolerance = match asked.0 {
                     // Both are the exact numbers rounded, except where these are nearly in the middle: a unit in the last place.
-                    "refined" | "refined, wrenches" => 2.0 * precision,
-                    "factors" | "solution" => ROUNDINGS * precision,
+                    Refined => 2.0 * precision,
+                    Factors | Solution => ROUNDINGS * precision,
                     _ if turns => ROUNDINGS * precision,
                     _ => 0.0,
                 };
-                within(&what, relative(each, found, &truth), tolerance);
+                within(&what, relative(size(asked.0, &model), found, &truth(|_| &model, &states, *asked)), tolerance);
             }
         }
     }
@@ -225,15 +93,15 @@ fn states_do_not_depend_on_their_neighbours() {
         let nq = model.topology.nq();
         let mut states = States::random(&model, 11);
         let mut batch = Batch::<f64>::new(&model);
-        let alone = in_rows(&mut batch, &model, &states);
+        let alone = in_rows(&mut batch, &model, &ASKED, &states);
         for x in &mut states.q[5 * nq..6 * nq] {
             *x *= 1e6;
         }
-        for ((quantity, done, found), (.., before)) in in_rows(&mut batch, &model, &states).iter().zip(&alone) {
-            assert_eq!(done, &Ok(()), "{name}, {quantity}");
+        for ((quantity, done, found), (.., before)) in in_rows(&mut batch, &model, &ASKED, &states).iter().zip(&alone) {
+            assert_eq!(done, &Ok(()), "{name}, {quantity:?}");
             let each = found.len() / 11;
             let others = |out: &[f64]| [&out[..5 * each], &out[6 * each..]].concat();
-            assert_eq!(others(found), others(before), "{name}, {quantity}");
+            assert_eq!(others(found), others(before), "{name}, {quantity:?}");
         }
     }
 }
@@ -244,7 +112,8 @@ fn a_state_with_a_bad_number_is_reported_and_harms_no_other() {
     let model = build(&ROBOTS[7].1);
     let (count, nq, nv) = (19, model.topology.nq(), model.topology.nv());
     let clean = States::random(&model, count);
-    let before = [Batch::<f64>::new(&model), Batch::new(&model).on_all_cores()].map(|mut batch| in_rows(&mut batch, &model, &clean));
+    let before =
+        [Batch::<f64>::new(&model), Batch::new(&model).on_all_cores()].map(|mut batch| in_rows(&mut batch, &model, &ASKED, &clean));
     for (bad, value) in [(0, f64::NAN), (6, f64::INFINITY), (8, f64::NEG_INFINITY), (18, f64::NAN)] {
         let six = 6 * model.topology.bodies();
         let places =
@@ -260,28 +129,28 @@ fn a_state_with_a_bad_number_is_reported_and_harms_no_other() {
             for parallel in [false, true] {
                 let new = || if parallel { Batch::<f64>::new(&model).on_all_cores() } else { Batch::new(&model) };
                 let before = &before[usize::from(parallel)];
-                for after in [in_rows(&mut new(), &model, &states), in_lanes(&mut new(), &model, &states)] {
-                    for ((quantity, done, found), (.., before)) in after.iter().zip(before) {
+                for after in [in_rows(&mut new(), &model, &ASKED, &states), in_lanes(&mut new(), &model, &ASKED, &states)] {
+                    for (((quantity, forced), done, found), (.., before)) in after.iter().zip(before) {
                         let independent = match array {
-                            "velocities v" => matches!(*quantity, "mass matrix" | "factors" | "solution"),
-                            "external wrenches" => !quantity.ends_with("wrenches"),
+                            "velocities v" => matches!(quantity, MassMatrix | Factors | Solution),
+                            "external wrenches" => !forced,
                             _ => false,
                         };
                         if independent {
-                            assert_eq!((done, found), (&Ok(()), before), "{quantity} does not depend on {array}");
+                            assert_eq!((done, found), (&Ok(()), before), "{quantity:?} does not depend on {array}");
                             continue;
                         }
-                        let Err(BatchError::Failed { failures, .. }) = done else { panic!("{quantity}, state {bad}: {done:?}") };
+                        let Err(BatchError::Failed { failures, .. }) = done else { panic!("{quantity:?}, state {bad}: {done:?}") };
                         // In lane order the copies that fill the last group are states too.
                         let failures: Vec<Failure> = failures.iter().copied().filter(|failure| failure.state < count).collect();
                         let [Failure { state, cause: Cause::Input { array: named, entry: at, value: reported } }] = failures[..] else {
-                            panic!("{quantity}: {failures:?}")
+                            panic!("{quantity:?}: {failures:?}")
                         };
-                        assert_eq!((state, named, at, reported.to_bits()), (bad, array, entry, value.to_bits()), "{quantity}");
+                        assert_eq!((state, named, at, reported.to_bits()), (bad, array, entry, value.to_bits()), "{quantity:?}");
                         let each = found.len() / count;
                         for (k, (found, before)) in found.chunks(each).zip(before.chunks(each)).enumerate() {
                             let good = if k == bad { found.iter().all(|x| x.is_nan()) } else { found == before };
-                            assert!(good, "{quantity}, state {k} beside the bad state {bad}");
+                            assert!(good, "{quantity:?}, state {k} beside the bad state {bad}");
                         }
                     }
                 }
@@ -362,11 +231,13 @@ fn each_sample_of_the_parameters_has_its_state() {
         let samples: Vec<Model<f64>> = (0..11).map(|seed| sample(recipe, seed)).collect();
         let states = States::random(&samples[0], samples.len());
         let mut batch = Batch::of_samples(&samples).unwrap();
-        let outcome = in_rows(&mut batch, &samples[0], &states);
-        assert_eq!(bits(&outcome), bits(&in_lanes(&mut batch.clone().on_all_cores(), &samples[0], &states)), "{name}");
-        for ((quantity, done, found), (_, each, truth)) in outcome.iter().zip(one_by_one(|k| &samples[k], &states)) {
-            assert_eq!(done, &Ok(()), "{name}, {quantity}");
-            within(&format!("{name}, {quantity}, samples"), relative(each, found, &truth), ROUNDINGS * f64::EPSILON / 2.0);
+        let outcome = in_rows(&mut batch, &samples[0], &ASKED, &states);
+        assert_eq!(bits(&outcome), bits(&in_lanes(&mut batch.clone().on_all_cores(), &samples[0], &ASKED, &states)), "{name}");
+        for (asked, done, found) in &outcome {
+            let what = format!("{name}, {asked:?}, samples");
+            assert_eq!(done, &Ok(()), "{what}");
+            let truth = truth(|k| &samples[k], &states, *asked);
+            within(&what, relative(size(asked.0, &samples[0]), found, &truth), ROUNDINGS * f64::EPSILON / 2.0);
         }
     }
 }

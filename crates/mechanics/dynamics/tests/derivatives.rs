@@ -9,7 +9,7 @@ use featherbench_dynamics::{
 };
 use featherbench_model::Model;
 use featherbench_robots::StateBatch;
-use featherbench_spatial::{Dual, Force, Motion, Vec3};
+use featherbench_spatial::{Dual, Force, Lift, Motion, Real, Vec3};
 
 fn each_state(mut check: impl FnMut(&str, &Model<f64>, &[f64], &[f64], &[f64], &[f64])) {
     for (name, recipe) in &ROBOTS {
@@ -114,48 +114,39 @@ fn rate_of_the_mass_matrix_is_twice_the_coriolis_power() {
     });
 }
 
+/// What every kernel gives, in the order of the labels below.
+fn everything<T: Real>(model: &Model<f64>, q: &[T], v: &[T], a: &[T], tau: &[T]) -> [Vec<T>; 8]
+where
+    f64: Lift<T>,
+{
+    let mut solved = tau.to_vec();
+    let matrix = mass_matrix(model, q).unwrap();
+    let entries = matrix.values().to_vec();
+    matrix.into_ltdl().unwrap().solve(&mut solved).unwrap();
+    [
+        inverse_dynamics(model, q, v, a).unwrap(),
+        bias_force(model, q, v).unwrap(),
+        forward_dynamics(model, q, v, tau).unwrap(),
+        entries,
+        solved,
+        center_of_mass(model, q).unwrap().position.to_array().to_vec(),
+        centroidal_momentum(model, q, v).unwrap().momentum.to_array().to_vec(),
+        vec![energy(model, q, v).unwrap().kinetic],
+    ]
+}
+
 /// Directional derivatives of every kernel in all inputs at once, against central differences along the flow.
 #[test]
 fn duals_agree_with_central_differences() {
     const STEP: f64 = 1e-6;
     each_state(|name, model, q, v, a, tau| {
-        let (dq, dv): (Vec<f64>, Vec<f64>) = (flow(model, q, v).iter().map(|x| x.derivative).collect(), a.to_vec());
-        let moved = |x: &[f64], dx: &[f64], t: f64| x.iter().zip(dx).map(|(x, dx)| x + t * dx).collect::<Vec<_>>();
-        let (q_dual, v_dual, a_dual, tau_dual) = (with_rate(q, &dq), with_rate(v, &dv), with_rate(a, tau), with_rate(tau, a));
-
-        let everything = |t: f64| {
-            let (q, v, a, tau) = (moved(q, &dq, t), moved(v, &dv, t), moved(a, tau, t), moved(tau, a, t));
-            let mut solved = tau.clone();
-            let matrix = mass_matrix(model, &q).unwrap();
-            let entries = matrix.values().to_vec();
-            matrix.into_ltdl().unwrap().solve(&mut solved).unwrap();
-            let com = center_of_mass(model, &q).unwrap().position.to_array().to_vec();
-            vec![
-                inverse_dynamics(model, &q, &v, &a).unwrap(),
-                bias_force(model, &q, &v).unwrap(),
-                forward_dynamics(model, &q, &v, &tau).unwrap(),
-                entries,
-                solved,
-                com,
-                centroidal_momentum(model, &q, &v).unwrap().momentum.to_array().to_vec(),
-                vec![energy(model, &q, &v).unwrap().kinetic],
-            ]
+        let dq: Vec<f64> = flow(model, q, v).iter().map(|x| x.derivative).collect();
+        let moved = |t: f64| {
+            let along = |x: &[f64], dx: &[f64]| x.iter().zip(dx).map(|(x, dx)| x + t * dx).collect::<Vec<_>>();
+            everything(model, &along(q, &dq), &along(v, a), &along(a, tau), &along(tau, a))
         };
-        let mut solved = tau_dual.clone();
-        let matrix = mass_matrix(model, &q_dual).unwrap();
-        let entries = matrix.values().to_vec();
-        matrix.into_ltdl().unwrap().solve(&mut solved).unwrap();
-        let duals = [
-            inverse_dynamics(model, &q_dual, &v_dual, &a_dual).unwrap(),
-            bias_force(model, &q_dual, &v_dual).unwrap(),
-            forward_dynamics(model, &q_dual, &v_dual, &tau_dual).unwrap(),
-            entries,
-            solved,
-            center_of_mass(model, &q_dual).unwrap().position.to_array().to_vec(),
-            centroidal_momentum(model, &q_dual, &v_dual).unwrap().momentum.to_array().to_vec(),
-            vec![energy(model, &q_dual, &v_dual).unwrap().kinetic],
-        ];
-        let (forward, backward) = (everything(STEP), everything(-STEP));
+        let duals = everything(model, &with_rate(q, &dq), &with_rate(v, a), &with_rate(a, tau), &with_rate(tau, a));
+        let (forward, backward) = (moved(STEP), moved(-STEP));
         let labels = ["ID", "bias", "ABA", "M", "M⁻¹τ", "centre of mass", "momentum", "energy"];
         for (k, label) in labels.into_iter().enumerate() {
             let found: Vec<f64> = duals[k].iter().map(|x| x.derivative).collect();

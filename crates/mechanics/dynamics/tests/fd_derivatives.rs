@@ -2,10 +2,10 @@
 
 use crate::common;
 
-use common::{condition, constant, each_robot_and_state, flow, larger, lifted, unit, within};
+use common::{condition, constant, each_robot_and_state, flow, generated, larger, lifted, unit, within};
 use featherbench_dynamics::{Aba, FdDerivatives, FdPartials, TreeSparse, fd_derivatives, mass_matrix};
 use featherbench_model::Model;
-use featherbench_robots::{Family, StateBatch};
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{DoubleDouble, Dual, Force, Real};
 use nalgebra::DMatrix;
 
@@ -77,7 +77,7 @@ fn a_joint_without_inertia_is_refused() {
 
 /// Largest errors of v̇, ∂v̇/∂q and ∂v̇/∂v over 12 random states, in units free of dimension.
 fn largest_errors(family: &str) -> [f64; 3] {
-    let model: Model<f64> = Model::build(&Family::parse(family).unwrap().generate().unwrap()).unwrap();
+    let model = generated(family);
     let (states, n) = (StateBatch::random(&model, 12, 1), model.topology.nv());
     let mut errors = [0.0; 3];
     for k in 0..states.count() {

@@ -4,13 +4,13 @@
 use crate::common;
 
 use common::dense::{Dense, off};
-use common::{ROBOTS, condition, lifted, robot, topology, within};
+use common::{ROBOTS, condition, describe, generated, lifted, robot, topology, within};
 use featherbench_dynamics::{
     BaseBlocks, Error, FloatingBase, NoFloatingBase, NotPositiveDefinite, PartitionError, TreeSparse, bias_force, centroidal_momentum,
     forward_dynamics, forward_kinematics, mass_matrix,
 };
 use featherbench_model::{Axis, Description, JointKind, Model};
-use featherbench_robots::{Family, StateBatch};
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{Counted, DoubleDouble, Dual, Mat3, Operations, Real, Sym3, Vec3};
 use wide::f64x4;
 
@@ -25,7 +25,7 @@ fn floating() -> Vec<(String, Description)> {
         "tree:n=30,base=free",
         "joints:kind=spherical,base=free,shape=branched",
     ];
-    let mut robots: Vec<_> = families.iter().map(|name| ((*name).to_owned(), Family::parse(name).unwrap().generate().unwrap())).collect();
+    let mut robots: Vec<_> = families.iter().map(|name| ((*name).to_owned(), describe(name))).collect();
     robots.push((ROBOTS[7].0.to_owned(), robot(&ROBOTS[7].1, 11)));
     robots
 }
@@ -349,8 +349,7 @@ fn integrate(model: &Model<f64>, tau: &[f64], mut q: Vec<f64>, mut v: Vec<f64>, 
 /// error of the integrator alone, which falls by 2⁴ where the step is halved. The centre of mass moves on a line.
 #[test]
 fn spatial_momentum_is_conserved_at_the_order_of_the_integrator() {
-    let humanoid: Model<f64> = Model::build(&Family::parse("humanoid").unwrap().generate().unwrap()).unwrap();
-    let humanoid = weightless(&humanoid);
+    let humanoid = weightless(&generated("humanoid"));
     let states = StateBatch::random(&humanoid, 1, 6);
     let mut tau = states.tau(0).to_vec();
     tau[..6].fill(0.0);

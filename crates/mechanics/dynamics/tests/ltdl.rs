@@ -3,10 +3,10 @@
 
 use crate::common;
 
-use common::{ByReciprocal, ROBOTS, build, distance, dyadic_chain, larger, largest, lifted, one_of, topology, within};
+use common::{ByReciprocal, ROBOTS, build, distance, dyadic_chain, generated, larger, largest, lifted, one_of, topology, within};
 use featherbench_dynamics::{Ltdl, NotPositiveDefinite, TreeSparse, mass_matrix};
-use featherbench_model::{Axis, JointKind, Model, Topology};
-use featherbench_robots::{Family, Random, StateBatch};
+use featherbench_model::{Axis, JointKind, Topology};
+use featherbench_robots::{Random, StateBatch};
 use featherbench_spatial::{Counted, DoubleDouble, Real};
 use wide::f64x4;
 
@@ -29,11 +29,6 @@ pub(crate) fn random_tree(n: usize, spread: f64, seed: u64) -> Topology {
     }))
 }
 
-pub(crate) fn generated(name: &str) -> Topology {
-    let model: Model<f64> = Model::build(&Family::parse(name).unwrap().generate().unwrap()).unwrap();
-    model.topology
-}
-
 /// A chain longer than a path that is kept.
 fn longest() -> (String, Topology) {
     ("chain 1030, longer than a kept path".into(), tree(-1..1029))
@@ -54,7 +49,7 @@ pub(crate) fn topologies() -> Vec<(String, Topology)> {
         all.push((format!("hub {n}"), tree(std::iter::once(-1).chain(std::iter::repeat_n(0, n)))));
     }
     for name in ["humanoid", "quadruped", "hand", "binary_tree:depth=6"] {
-        all.push((name.into(), generated(name)));
+        all.push((name.into(), generated(name).topology));
     }
     for (seed, n) in [2, 3, 4, 5, 6, 7, 8, 9, 12, 15, 20, 33, 50, 80, 121].into_iter().enumerate() {
         for spread in [0.05, 0.2, 0.5, 0.9] {

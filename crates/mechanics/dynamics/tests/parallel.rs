@@ -2,10 +2,10 @@
 
 use crate::common;
 
-use common::{ROBOTS, build, wrenches};
+use common::{ROBOTS, build, generated, wrenches};
 use featherbench_dynamics::{Aba, Crba, Error, Ltdl, ParallelAba, ParallelCrba, ParallelLtdl, ParallelRnea, Rnea, TreeSparse};
 use featherbench_model::Model;
-use featherbench_robots::{Family, StateBatch};
+use featherbench_robots::StateBatch;
 use featherbench_spatial::Real;
 use rayon::ThreadPoolBuilder;
 
@@ -24,11 +24,10 @@ const TREES: [&str; 10] = [
 ];
 
 fn models() -> impl Iterator<Item = (String, Model<f64>)> {
-    let family = |spec: &&str| {
-        let robot = Family::parse(spec).and_then(|family| family.generate()).expect("a family");
-        ((*spec).to_owned(), Model::build(&robot).expect("a robot"))
-    };
-    TREES.iter().map(family).chain(ROBOTS.iter().map(|(name, recipe)| ((*name).to_owned(), build(recipe))))
+    TREES
+        .iter()
+        .map(|spec| ((*spec).to_owned(), generated(spec)))
+        .chain(ROBOTS.iter().map(|(name, recipe)| ((*name).to_owned(), build(recipe))))
 }
 
 /// Calls `each` in pools of one, two and five threads.
@@ -77,7 +76,7 @@ fn answers_are_those_of_one_thread_to_the_bit() {
 fn errors_are_those_of_one_thread() {
     let mut failed = 0;
     for spec in ["binary_tree:depth=9", "centipede:segments=40", "platform:robots=20,n=6", "tree:n=200,joints=all,base=free"] {
-        let mut model: Model<f64> = Model::build(&Family::parse(spec).unwrap().generate().unwrap()).unwrap();
+        let mut model = generated(spec);
         let bodies = model.topology.bodies();
         let (t, states) = (model.topology.clone(), StateBatch::random(&model, 1, 3));
         // Two bodies at a time lose themselves and what they carry.
@@ -113,8 +112,7 @@ fn errors_are_those_of_one_thread() {
 /// The plan belongs to a tree: another one of the same size is refused.
 #[test]
 fn another_tree_of_the_same_size_is_refused() {
-    let model = |spec: &str| -> Model<f64> { Model::build(&Family::parse(spec).unwrap().generate().unwrap()).unwrap() };
-    let (tree, chain) = (model("binary_tree:depth=8"), model("chain:n=255,layout=spatial"));
+    let (tree, chain) = (generated("binary_tree:depth=8"), generated("chain:n=255,layout=spatial"));
     let states = StateBatch::random(&chain, 1, 3);
     let (q, v, tau, mut out) = (states.q(0), states.v(0), states.tau(0), vec![f64::zero(); 255]);
     assert!(ParallelAba::new(&tree.topology).run(&chain, q, v, tau, None, &mut out).is_err());

@@ -6,12 +6,12 @@
 
 use crate::common;
 
-use common::{ROBOTS, build, distance, dyadic_chain, larger, largest, lifted, within, wrenches};
+use common::{ROBOTS, build, describe, distance, dyadic_chain, larger, largest, lifted, within, wrenches};
 use featherbench_dynamics::{
     Aba, Crba, Error, Ltdl, NotPositiveDefinite, Refined, Rnea, forward_dynamics, mass_matrix, refined_forward_dynamics,
 };
-use featherbench_model::{Description, Model};
-use featherbench_robots::{Family, StateBatch};
+use featherbench_model::Model;
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{Compensated, DoubleDouble, Force, Lift, Real};
 use std::f64::consts::PI;
 use wide::f64x8;
@@ -20,10 +20,6 @@ use wide::f64x8;
 const ROUNDING: f64 = f64::EPSILON / 2.0;
 
 type Extended = Vec<DoubleDouble>;
-
-fn description(family: &str) -> Description {
-    Family::parse(family).expect("a family").generate().expect("within its limits")
-}
 
 /// Accelerations by the articulated-body algorithm in double-double, refined twice in double-double.
 fn truth<P: Real + Lift<DoubleDouble>>(model: &Model<P>, q: &[f64], v: &[f64], tau: &[f64], wrenches: Option<&[Force<f64>]>) -> Extended {
@@ -104,7 +100,7 @@ fn table() -> Vec<(String, f64, f64, usize, f64)> {
 #[test]
 fn every_case_of_the_table_is_right_to_the_last_digit() {
     for (family, reach, speed, count, loss) in table() {
-        let model = Model::build(&description(&family)).unwrap();
+        let model = Model::build(&describe(&family)).unwrap();
         let mut states = StateBatch::random(&model, count, 7);
         if reach != 1.0 {
             states.q.iter_mut().for_each(|q| *q *= reach);
@@ -156,7 +152,7 @@ fn every_kind_of_joint_with_wrenches_and_armature() {
 fn registers_of_states_give_what_each_state_alone_gives() {
     let robots = ROBOTS.iter().map(|(name, recipe)| ((*name).to_owned(), build(recipe)));
     let heavy = ["humanoid:hand_mass=1000", "chain:n=20,layout=spatial,tip_scale=1e6"];
-    let heavy = heavy.map(|family| (family.to_owned(), Model::build(&description(family)).unwrap()));
+    let heavy = heavy.map(|family| (family.to_owned(), Model::build(&describe(family)).unwrap()));
     for (name, model) in robots.chain(heavy) {
         let states = StateBatch::random(&model, 8, 13);
         let f = wrenches(&model, 6);
@@ -188,8 +184,8 @@ fn registers_of_states_give_what_each_state_alone_gives() {
 /// The parameters of a description with 32 digits, and a register of copies of one state.
 #[test]
 fn registers_take_a_model_in_double_double() {
-    let extended = Model::<DoubleDouble>::build(&description("humanoid:hand_mass=1000")).unwrap();
-    let states = StateBatch::random(&Model::<f64>::build(&description("humanoid:hand_mass=1000")).unwrap(), 5, 2);
+    let extended = Model::<DoubleDouble>::build(&describe("humanoid:hand_mass=1000")).unwrap();
+    let states = StateBatch::random(&Model::<f64>::build(&describe("humanoid:hand_mass=1000")).unwrap(), 5, 2);
     let t = &extended.topology;
     let (mut wide, mut single) = (Refined::<Compensated<f64x8>, f64x8>::new(t, 2), Refined::<Compensated>::new(t, 2));
     let (mut a, mut alone) = (vec![f64x8::ZERO; t.nv()], vec![0.0; t.nv()]);
@@ -250,7 +246,7 @@ fn solutions_are_those_of_the_mass_matrix() {
 /// The robot of a description with decimal numbers, not the one that its rounded inertias make.
 #[test]
 fn a_model_in_double_double_gives_the_accelerations_of_the_description() {
-    let description = description("humanoid:hand_mass=1000");
+    let description = describe("humanoid:hand_mass=1000");
     let (plain, extended) = (Model::<f64>::build(&description).unwrap(), Model::<DoubleDouble>::build(&description).unwrap());
     let states = StateBatch::random(&plain, 10, 2);
     for k in 0..states.count() {
@@ -271,7 +267,7 @@ fn a_model_in_double_double_gives_the_accelerations_of_the_description() {
 /// With a tip 10¹⁰ times as heavy as a link the plain algorithm keeps about five digits. Each step adds about as many.
 #[test]
 fn steps_converge_and_say_how_far_they_moved() {
-    let model = Model::build(&description("chain:n=20,layout=spatial,tip_scale=1e10")).unwrap();
+    let model = Model::build(&describe("chain:n=20,layout=spatial,tip_scale=1e10")).unwrap();
     let states = StateBatch::random(&model, 20, 7);
     let mut errors = [0.0_f64; 4];
     for k in 0..states.count() {

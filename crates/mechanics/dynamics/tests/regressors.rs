@@ -2,13 +2,13 @@
 
 use crate::common;
 
-use common::{distance, each_robot_and_state, larger, largest, robots, within, wrenches};
+use common::{distance, each_robot_and_state, generated, larger, largest, robots, within, wrenches};
 use featherbench_dynamics::{
     PARAMETERS, ParameterSensitivity, Regressor, RegressorMatrix, State, energy, forward_dynamics, inertial_parameters, inverse_dynamics,
     mass_matrix, torque_regressor,
 };
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement};
-use featherbench_robots::{Family, StateBatch};
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{Dual, Mat3, Real, RigidBodyInertia, Sym3, Vec3};
 use nalgebra::DMatrix;
 
@@ -226,7 +226,7 @@ fn ranks_of_the_torque_regressor() {
     }
     // A floating base: ten for the base as well, and its rows alone tell as much.
     for family in ["quadruped", "chain:n=6,layout=spatial,base=free"] {
-        let model: Model<f64> = Model::build(&Family::parse(family).unwrap().generate().unwrap()).unwrap();
+        let model = generated(family);
         assert_eq!(rank(&model, true), 7 * (model.topology.nv() - 6) + 10, "{family}");
     }
 }

@@ -2,15 +2,11 @@
 
 use crate::common;
 
-use common::within;
+use common::{describe, within};
 use featherbench_dynamics::{Aba, Crba, Energy, Kinematics, Ltdl, Momentum, ParallelAba, ParallelRnea, Refined, Rnea, TreeSparse, Twisted};
-use featherbench_model::{Description, Model};
-use featherbench_robots::{Family, StateBatch};
+use featherbench_model::Model;
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{Compensated, Vec3};
-
-fn describe(spec: &str) -> Description {
-    Family::parse(spec).and_then(|family| family.generate()).expect("a family")
-}
 
 /// Runs it on a thread whose stack of 256 KiB has no room for a call per joint: two bytes for each of a chain of 10⁵.
 fn on_a_small_stack(test: impl FnOnce() + Send + 'static) {

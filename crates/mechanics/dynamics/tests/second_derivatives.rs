@@ -60,6 +60,29 @@ fn each_state(mut check: impl FnMut(&str, &Model<f64>, [&[f64]; 4], &[Force<f64>
     }
 }
 
+/// Compares the second derivatives by (q,q), (v,v), (q,v), and (q,a) or (q,τ) with those of `weighted`.
+fn compare(
+    name: &str,
+    model: &Model<f64>,
+    [q, v, last]: [&[f64]; 3],
+    weighted: impl Fn(&[Nested], &[Nested], &[Nested]) -> Nested,
+    found: [DMatrix<f64>; 4],
+    tolerance: f64,
+) {
+    let at = |j, k| configuration(model, q, j, k);
+    let (still_q, still_v, still) = (at(None, None), moving(v, None, None), moving(last, None, None));
+    let n = v.len();
+    let truths = [
+        second(n, |j, k| weighted(&at(Some(j), Some(k)), &still_v, &still)),
+        second(n, |j, k| weighted(&still_q, &moving(v, Some(j), Some(k)), &still)),
+        second(n, |j, k| weighted(&at(Some(j), None), &moving(v, None, Some(k)), &still)),
+        second(n, |j, k| weighted(&at(Some(j), None), &still_v, &moving(last, None, Some(k)))),
+    ];
+    for (by, (truth, found)) in ["(q,q)", "(v,v)", "(q,v)", "(q, a or τ)"].into_iter().zip(truths.iter().zip(&found)) {
+        within(&format!("{name}: {by}"), relative(truth, found), tolerance);
+    }
+}
+
 #[test]
 fn second_derivatives_of_inverse_dynamics_are_those_of_nested_duals() {
     each_state(|name, model, [q, v, a, weights], f| {
@@ -70,24 +93,16 @@ fn second_derivatives_of_inverse_dynamics_are_those_of_nested_duals() {
             Rnea::new(&model.topology).run(model, q, v, a, Some(&lifted), &mut tau).unwrap();
             tau.iter().zip(weights).fold(Nested::zero(), |sum, (tau, &weight)| tau.mul_add(Nested::from_f64(weight), sum))
         };
-        let (still_q, still_v, still_a) = (configuration(model, q, None, None), moving(v, None, None), moving(a, None, None));
         let mut found = IdSecondPartials::new(&model.topology);
         IdHessian::new(&model.topology).run(model, State { q, v, given: a, wrenches: Some(f) }, weights, &mut found).unwrap();
-
-        let truth = second(n, |j, k| weighted(&configuration(model, q, Some(j), Some(k)), &still_v, &still_a));
+        let IdSecondPartials { qq, vv, qv, qa } = &found;
         // What issue 14 asks of first derivatives.
-        within(&format!("{name}: (q,q)"), relative(&truth, &found.qq.to_dense()), 1e-12);
-        let truth = second(n, |j, k| weighted(&still_q, &moving(v, Some(j), Some(k)), &still_a));
-        within(&format!("{name}: (v,v)"), relative(&truth, &found.vv.to_dense()), 1e-12);
-        let truth = second(n, |j, k| weighted(&configuration(model, q, Some(j), None), &moving(v, None, Some(k)), &still_a));
-        within(&format!("{name}: (q,v)"), relative(&truth, &found.qv.to_dense()), 1e-12);
-        let truth = second(n, |j, k| weighted(&configuration(model, q, Some(j), None), &still_v, &moving(a, None, Some(k))));
-        within(&format!("{name}: (q,a)"), relative(&truth, &found.qa.to_dense()), 1e-12);
+        compare(name, model, [q, v, a], weighted, [qq.to_dense(), vv.to_dense(), qv.to_dense(), qa.to_dense()], 1e-12);
 
         // Symmetric, but within quaternion joints.
         for (i, j) in (0..n).flat_map(|i| (0..i).map(move |j| (i, j))) {
             let one_joint = model.topology.joints().iter().any(|joint| (joint.v..joint.v + joint.kind.nv()).contains(&i) && j >= joint.v);
-            assert!(one_joint || found.qq.get(i, j) == found.qq.get(j, i), "{name}: ({i}, {j})");
+            assert!(one_joint || qq.get(i, j) == qq.get(j, i), "{name}: ({i}, {j})");
         }
     });
 }
@@ -102,22 +117,13 @@ fn second_derivatives_of_forward_dynamics_are_those_of_nested_duals() {
             Aba::new(&model.topology).run(model, q, v, tau, Some(&lifted), &mut a).unwrap();
             a.iter().zip(weights).fold(Nested::zero(), |sum, (a, &weight)| a.mul_add(Nested::from_f64(weight), sum))
         };
-        let (still_q, still_v, still_tau) = (configuration(model, q, None, None), moving(v, None, None), moving(tau, None, None));
         let (mut first, mut found) = (FdPartials::new(&model.topology), FdSecondPartials::new(&model.topology));
         FdHessian::new(&model.topology).run(model, State { q, v, given: tau, wrenches: Some(f) }, weights, &mut first, &mut found).unwrap();
-        let dense = |rows: &[f64]| DMatrix::from_row_slice(n, n, rows);
-
+        let found = [&found.qq, &found.vv, &found.qv, &found.qtau].map(|rows| DMatrix::from_row_slice(n, n, rows));
+        assert_eq!(found[1], found[1].transpose(), "{name}");
         // Three solutions with M, one after the other: κ is 1e3 and less, but 1e5 of chains of 36 and more of the planar one.
         let tolerance = if name.starts_with("chain:n=36") { 1e-10 } else { 1e-11 };
-        let truth = second(n, |j, k| weighted(&configuration(model, q, Some(j), Some(k)), &still_v, &still_tau));
-        within(&format!("{name}: (q,q)"), relative(&truth, &dense(&found.qq)), tolerance);
-        let truth = second(n, |j, k| weighted(&still_q, &moving(v, Some(j), Some(k)), &still_tau));
-        within(&format!("{name}: (v,v)"), relative(&truth, &dense(&found.vv)), tolerance);
-        let truth = second(n, |j, k| weighted(&configuration(model, q, Some(j), None), &moving(v, None, Some(k)), &still_tau));
-        within(&format!("{name}: (q,v)"), relative(&truth, &dense(&found.qv)), tolerance);
-        let truth = second(n, |j, k| weighted(&configuration(model, q, Some(j), None), &still_v, &moving(tau, None, Some(k))));
-        within(&format!("{name}: (q,τ)"), relative(&truth, &dense(&found.qtau)), tolerance);
-        assert_eq!(dense(&found.vv), dense(&found.vv).transpose(), "{name}");
+        compare(name, model, [q, v, tau], weighted, found, tolerance);
     });
 }
 

@@ -2,20 +2,12 @@
 
 use crate::common;
 
-use common::{Kind, Recipe, lifted, robot, within, wrenches};
+use common::{Kind, Recipe, describe, generated, lifted, robot, within, wrenches};
 use featherbench_dynamics::{Aba, Error, Twisted};
 use featherbench_model::{Description, Model, Topology};
-use featherbench_robots::{Family, StateBatch};
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{Counted, DoubleDouble, Force, Lift, Operations, Real};
 use rayon::ThreadPoolBuilder;
-
-fn describe(spec: &str) -> Description {
-    Family::parse(spec).and_then(|family| family.generate()).expect("a family")
-}
-
-fn generate(spec: &str) -> Model<f64> {
-    Model::build(&describe(spec)).expect("a robot")
-}
 
 fn two_norm<T: Real + Lift<DoubleDouble>>(values: &[T], truth: &[DoubleDouble]) -> f64 {
     let square = |x: DoubleDouble| (x * x).to_f64();
@@ -103,7 +95,7 @@ fn accuracy_is_that_of_the_articulated_body_algorithm() {
         ("tree:n=100,spread=0", 1.0),
     ];
     for (spec, reach) in cases {
-        let model = generate(spec);
+        let model = generated(spec);
         let mut states = StateBatch::random(&model, 4, 9);
         if reach < 1.0 {
             states.q.iter_mut().for_each(|q| *q *= reach);
@@ -143,7 +135,7 @@ fn answers_do_not_depend_on_the_number_of_threads() {
 /// A body without inertia about its joint cannot be eliminated from the base side; the answer is right all the same, to the bit of ABA.
 #[test]
 fn massless_bodies_are_left_to_the_articulated_body_algorithm() {
-    let mut model = generate("chain:n=20,layout=spatial");
+    let mut model = generated("chain:n=20,layout=spatial");
     model.inertias[2] = featherbench_spatial::RigidBodyInertia::zero();
     let states = StateBatch::random(&model, 1, 5);
     assert_eq!(twisted::<_, f64>(&model, &states, 0, None, 8), aba::<_, f64>(&model, &states, 0, None));
@@ -159,13 +151,13 @@ fn massless_bodies_are_left_to_the_articulated_body_algorithm() {
 
 #[test]
 fn other_trees_have_no_workspace() {
-    let refuses = |spec: &str| Twisted::<f64>::new(&generate(spec).topology).is_none();
+    let refuses = |spec: &str| Twisted::<f64>::new(&generated(spec).topology).is_none();
     for spec in ["binary_tree:depth=3", "star:n=3", "joints:kind=spherical,shape=single", "chain:n=1", "snake:n=2", "hand"] {
         assert!(refuses(spec), "{spec}");
     }
     assert!(!refuses("chain:n=2") && !refuses("snake:n=3"));
     // A workspace of a chain refuses a tree of as many bodies.
-    let (chain, tree) = (generate("chain:n=7"), generate("binary_tree:depth=3"));
+    let (chain, tree) = (generated("chain:n=7"), generated("binary_tree:depth=3"));
     let states = StateBatch::random(&tree, 1, 5);
     let mut a = vec![0.0; 7];
     let refused = Twisted::new(&chain.topology).unwrap().run(&tree, states.q(0), states.v(0), states.tau(0), None, &mut a);
@@ -176,13 +168,13 @@ fn other_trees_have_no_workspace() {
 #[test]
 fn work_per_joint_is_what_the_documentation_says() {
     let counted = |n: usize, cut: usize| -> Operations {
-        let model = generate(&format!("chain:n={n},layout=spatial"));
+        let model = generated(&format!("chain:n={n},layout=spatial"));
         let states = StateBatch::random(&model, 1, 5);
         let pool = ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
         pool.install(|| Counted::count(|| drop(twisted::<_, Counted>(&model, &states, 0, None, cut))))
     };
     let serial = |n: usize| -> Operations {
-        let model = generate(&format!("chain:n={n},layout=spatial"));
+        let model = generated(&format!("chain:n={n},layout=spatial"));
         let states = StateBatch::random(&model, 1, 5);
         Counted::count(|| drop(aba::<_, Counted>(&model, &states, 0, None)))
     };
@@ -197,6 +189,6 @@ fn work_per_joint_is_what_the_documentation_says() {
 /// The cut is a share of the chain, and a free base stands on the base side.
 #[test]
 fn topologies_of_chains_are_accepted() {
-    let topology: Topology = generate("snake:n=40").topology;
+    let topology: Topology = generated("snake:n=40").topology;
     assert!(Twisted::<f64>::with_cut(&topology, 0).is_some() && Twisted::<f64>::with_cut(&topology, 100).is_some());
 }

@@ -4,131 +4,22 @@
 
 use crate::common;
 
+use common::batched::{Asked, Outcome, Quantity::*, States, bits, dynamics, in_lanes, in_rows, one_by_one, relative, size};
 use common::{ROBOTS, build, dyadic_chain, fused::Fused, robot, within};
-use featherbench_dynamics::{
-    Aba, Batch, BatchError, Bias, Cause, Crba, Element, Failure, Ltdl, NoSuchWidth, NotPositiveDefinite, Number, Rnea, Sharing, Width,
-    to_lanes, to_rows,
-};
+use featherbench_dynamics::{Aba, Batch, BatchError, Cause, Failure, NoSuchWidth, NotPositiveDefinite, Number, Width};
 use featherbench_model::{JointKind, Model};
-use featherbench_robots::StateBatch;
-use featherbench_spatial::{Force, Lift, Real};
+use featherbench_spatial::{Lift, Real};
 
 /// States in a batch: fewer than a group, groups of four to sixteen, half a group more, and several.
 const COUNTS: [usize; 7] = [0, 1, 4, 8, 13, 21, 40];
 
-/// What a width computes by itself, in the order of the lists below.
-const QUANTITIES: [&str; 6] = ["inverse dynamics", "bias force", "forward dynamics", "mass matrix", "factors", "solution"];
+/// What a width computes by itself.
+const ASKED: [Asked; 6] =
+    [(InverseDynamics, true), (Bias, true), (ForwardDynamics, true), (MassMatrix, false), (Factors, false), (Solution, false)];
 
 /// Whether a width has fused multiply-add.
 fn is_fused(width: Width) -> bool {
     width != Width::AsBuilt || cfg!(any(target_feature = "fma", target_arch = "aarch64"))
-}
-
-/// What every quantity is computed from. The right-hand sides of solutions are τ.
-struct States<E> {
-    q: Vec<E>,
-    v: Vec<E>,
-    a: Vec<E>,
-    tau: Vec<E>,
-    /// External wrenches, six numbers per body.
-    wrenches: Vec<E>,
-}
-
-impl<S: Number> States<S> {
-    fn random(model: &Model<f64>, count: usize) -> Self {
-        let states = StateBatch::random(model, count, 3);
-        let wrenches: Vec<f64> = (0..count as u64).flat_map(|seed| common::wrenches(model, seed)).flat_map(|f| f.to_array()).collect();
-        let [q, v, a, tau, wrenches] = [&states.q, &states.v, &states.a, &states.tau, &wrenches]
-            .map(|numbers| -> Vec<S> { numbers.iter().map(|&x| S::from_f64(x)).collect() });
-        Self { q, v, a, tau, wrenches }
-    }
-
-    /// The same in lane order.
-    fn in_lanes<P>(&self, model: &Model<P>) -> States<S::Lanes> {
-        let t = &model.topology;
-        let lanes = |rows: &[S], each| to_lanes(rows, each).unwrap();
-        States {
-            q: lanes(&self.q, t.nq()),
-            v: lanes(&self.v, t.nv()),
-            a: lanes(&self.a, t.nv()),
-            tau: lanes(&self.tau, t.nv()),
-            wrenches: lanes(&self.wrenches, 6 * t.bodies()),
-        }
-    }
-}
-
-/// Numbers per state of each quantity.
-fn sizes<P>(model: &Model<P>) -> [usize; 6] {
-    let (nv, stored) = (model.topology.nv(), model.topology.stored());
-    [nv, nv, nv, stored, stored, nv]
-}
-
-/// What each call returned, and the results.
-type Outcome<E> = Vec<(Result<(), BatchError>, Vec<E>)>;
-
-fn answers<S: Number, M: Sharing, E: Element<S> + Real>(batch: &mut Batch<'_, S, M>, states: &States<E>, sizes: [usize; 6]) -> Outcome<E> {
-    let States { q, v, a, tau, wrenches } = states;
-    let (f, mut out) = (Some(&wrenches[..]), sizes.map(|each| vec![E::zero(); v.len() / sizes[0] * each]));
-    let [id, bias, fd, matrix, factors, solution] = &mut out;
-    let done = [
-        batch.inverse_dynamics(q, v, a, f, id),
-        batch.bias_force(q, v, f, bias),
-        batch.forward_dynamics(q, v, tau, f, fd),
-        batch.mass_matrix(q, matrix),
-        batch.factors(q, factors),
-        batch.solve(q, tau, solution),
-    ];
-    done.into_iter().zip(out).collect()
-}
-
-/// The same through arrays in lane order, with the results in row order.
-fn answers_in_lanes<S: Number, M: Sharing>(batch: &mut Batch<'_, S, M>, model: &Model<S>, states: &States<S>) -> Outcome<S> {
-    let count = states.v.len() / model.topology.nv();
-    let outcome = answers(batch, &states.in_lanes(model), sizes(model));
-    let in_rows = |((done, lanes), each): ((_, Vec<_>), _)| (done, to_rows(&lanes, each, count).unwrap());
-    outcome.into_iter().zip(sizes(model)).map(in_rows).collect()
-}
-
-/// The kernels state by state in the scalar T; state k has model `model(k)`.
-fn one_by_one<'m, S: Number + Lift<T>, T: Real>(model: impl Fn(usize) -> &'m Model<S>, states: &States<S>) -> [Vec<f64>; 6] {
-    let t = &model(0).topology;
-    let mut all: [Vec<f64>; 6] = Default::default();
-    let mut out = vec![T::zero(); t.nv()];
-    for k in 0..states.v.len() / t.nv() {
-        let part = |array: &[S], each| -> Vec<T> { array[k * each..][..each].iter().map(|x| x.lift()).collect() };
-        let (q, v, a, tau) = (part(&states.q, t.nq()), part(&states.v, t.nv()), part(&states.a, t.nv()), part(&states.tau, t.nv()));
-        let numbers = part(&states.wrenches, 6 * t.bodies());
-        let forces: Vec<Force<T>> = numbers.as_chunks().0.iter().map(|f| Force::from_array(*f)).collect();
-        let mut keep = |place: usize, numbers: &[T]| all[place].extend(numbers.iter().map(|x| x.min_lane()));
-        Rnea::new(t).run(model(k), &q, &v, &a, Some(&forces), &mut out).unwrap();
-        keep(0, &out);
-        Bias::new(t).run(model(k), &q, &v, Some(&forces), &mut out).unwrap();
-        keep(1, &out);
-        Aba::new(t).run(model(k), &q, &v, &tau, Some(&forces), &mut out).unwrap();
-        keep(2, &out);
-        let mut ltdl = Ltdl::new(t);
-        Crba::new(t).run(model(k), &q, ltdl.matrix_mut()).unwrap();
-        keep(3, ltdl.factors().values());
-        ltdl.factor().unwrap();
-        keep(4, ltdl.factors().values());
-        out.copy_from_slice(&tau);
-        ltdl.solve(&mut out).unwrap();
-        keep(5, &out);
-    }
-    all
-}
-
-/// The largest difference, relative to the largest number of the state.
-fn relative<S: Number>(each: usize, found: &[S], truth: &[f64]) -> f64 {
-    assert_eq!(found.len(), truth.len());
-    let found: Vec<f64> = found.iter().map(|x| x.min_lane()).collect();
-    let of_state = |(found, truth): (&[f64], &[f64])| common::distance(found, truth) / common::largest(truth);
-    found.chunks(each).zip(truth.chunks(each)).map(of_state).fold(0.0, common::larger)
-}
-
-/// The bits of results, and which calls succeeded.
-fn bits<S: Number>(outcome: &Outcome<S>) -> Vec<(bool, Vec<u64>)> {
-    outcome.iter().map(|(done, out)| (done.is_ok(), out.iter().map(|x| x.min_lane().to_bits()).collect())).collect()
 }
 
 /// Asserts that results are those of single states in the scalar that has the arithmetic of the width.
@@ -142,16 +33,23 @@ fn are_those_of_single_states<'m, S: Number + Lift<S> + Lift<Fused<S>>>(
 ) where
     Fused<S>: Real,
 {
-    let (each, joints) = (sizes(model(0)), model(0).topology.joints());
-    let turns = joints.iter().any(|joint| matches!(joint.kind, JointKind::Revolute(_) | JointKind::Helical));
-    let truth = if is_fused(width) { one_by_one::<S, Fused<S>>(model, states) } else { one_by_one::<S, S>(model, states) };
-    for (k, (done, found)) in outcome.iter().enumerate() {
-        assert_eq!(done, &Ok(()), "{what}, {width}, {}", QUANTITIES[k]);
+    let t = &model(0).topology;
+    let turns = t.joints().iter().any(|joint| matches!(joint.kind, JointKind::Revolute(_) | JointKind::Helical));
+    for (asked, done, found) in outcome {
+        let what = format!("{what}, {width}, {asked:?}");
+        assert_eq!(done, &Ok(()), "{what}");
+        let truth = one_by_one(states, t, |k| {
+            if is_fused(width) {
+                dynamics::<S, Fused<S>>(model(k), states, k, *asked)
+            } else {
+                dynamics::<S, S>(model(k), states, k, *asked)
+            }
+        });
         // As in `batch.rs`: sines and cosines of another library, six roundings for each of twenty joints; reciprocals in factors. Without
         // these the operations are the same.
-        let other_operations = turns || matches!(QUANTITIES[k], "factors" | "solution");
+        let other_operations = turns || matches!(asked.0, Factors | Solution);
         let tolerance = if other_operations { 120.0 * precision } else { 0.0 };
-        within(&format!("{what}, {width}, {}", QUANTITIES[k]), relative(each[k], found, &truth[k]), tolerance);
+        within(&what, relative(size(asked.0, model(0)), found, &truth), tolerance);
     }
 }
 
@@ -169,12 +67,12 @@ where
             for width in Width::available() {
                 let what = format!("{name}, {count} states");
                 let mut batch = Batch::new(&model).with_width(width).unwrap();
-                let outcome = answers(&mut batch, &states, sizes(&model));
+                let outcome = in_rows(&mut batch, &model, &ASKED, &states);
                 are_those_of_single_states(&what, width, &outcome, |_| &model, &states, precision);
                 // Orders and cores change nothing. Nor does the width, if the arithmetic is the same.
-                assert_eq!(bits(&outcome), bits(&answers_in_lanes(&mut batch, &model, &states)), "{what}, {width}: the order");
+                assert_eq!(bits(&outcome), bits(&in_lanes(&mut batch, &model, &ASKED, &states)), "{what}, {width}: the order");
                 let mut parallel = Batch::new(&model).on_all_cores().with_width(width).unwrap();
-                assert_eq!(bits(&outcome), bits(&answers_in_lanes(&mut parallel, &model, &states)), "{what}, {width}: the cores");
+                assert_eq!(bits(&outcome), bits(&in_lanes(&mut parallel, &model, &ASKED, &states)), "{what}, {width}: the cores");
                 if is_fused(width) {
                     let first = fused.get_or_insert_with(|| bits(&outcome));
                     assert!(*first == bits(&outcome), "{what}: {width} against the narrower width");
@@ -201,11 +99,11 @@ fn each_sample_of_the_parameters_has_its_state() {
         let states = States::random(&samples[0], samples.len());
         for width in Width::available() {
             let mut batch = Batch::of_samples(&samples).unwrap().with_width(width).unwrap();
-            let outcome = answers(&mut batch, &states, sizes(&samples[0]));
+            let outcome = in_rows(&mut batch, &samples[0], &ASKED, &states);
             are_those_of_single_states(name, width, &outcome, |k| &samples[k], &states, f64::EPSILON / 2.0);
             let mut parallel = batch.on_all_cores();
             assert_eq!(parallel.width(), width);
-            assert_eq!(bits(&outcome), bits(&answers_in_lanes(&mut parallel, &samples[0], &states)), "{name}, {width}");
+            assert_eq!(bits(&outcome), bits(&in_lanes(&mut parallel, &samples[0], &ASKED, &states)), "{name}, {width}");
         }
     }
 }
@@ -235,14 +133,15 @@ fn a_state_that_fails_harms_no_other() {
     let clean = States::<f64>::random(&model, count);
     for width in Width::available() {
         let mut batch = Batch::new(&model).with_width(width).unwrap();
-        let before = answers(&mut batch, &clean, sizes(&model));
+        let before = in_rows(&mut batch, &model, &ASKED, &clean);
         for bad in 0..count {
             for value in [1e6, f64::NAN, f64::NEG_INFINITY] {
-                let mut states = States { q: clean.q.clone(), ..States::random(&model, count) };
+                let mut states = clean.clone();
                 states.q[bad * nq + nq - 1] = value;
-                let rows = answers(&mut batch, &states, sizes(&model));
-                for outcome in [&rows, &answers_in_lanes(&mut batch, &model, &states)] {
-                    for (((done, found), (_, before)), each) in outcome.iter().zip(&before).zip(sizes(&model)) {
+                let rows = in_rows(&mut batch, &model, &ASKED, &states);
+                for outcome in [&rows, &in_lanes(&mut batch, &model, &ASKED, &states)] {
+                    for ((asked, done, found), (.., before)) in outcome.iter().zip(&before) {
+                        let each = size(asked.0, &model);
                         if value.is_finite() {
                             assert_eq!(done, &Ok(()), "{width}, state {bad}");
                         } else {
@@ -262,7 +161,7 @@ fn a_state_that_fails_harms_no_other() {
                 }
             }
         }
-        assert_eq!(before[0].1.len(), count * nv);
+        assert_eq!(before[0].2.len(), count * nv);
     }
 }
 

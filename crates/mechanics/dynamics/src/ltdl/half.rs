@@ -12,26 +12,31 @@ use crate::error::expect;
 use crate::{DimensionError, triangular};
 use featherbench_spatial::{Logarithm, Real};
 
+/// Halves of a solution, and products with one factor.
+///
+/// ```
+/// use featherbench_dynamics::{Ltdl, TreeSparse};
+/// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+/// matrix.values_mut().copy_from_slice(&[5.0_f64, 4.0, 8.0]);
+/// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
+/// let factors = matrix.into_ltdl()?;
+/// let x = [1.0, 1.0];
+/// assert_eq!(factors.applied(Ltdl::multiply_lower, &x)?, [1.0, 1.5]);
+/// assert_eq!(factors.applied(Ltdl::solve_lower, &x)?, [1.0, 0.5]);
+/// assert_eq!(factors.applied(Ltdl::multiply_lower_transposed, &x)?, [1.5, 1.0]);
+/// assert_eq!(factors.applied(Ltdl::solve_lower_transposed, &x)?, [0.5, 1.0]);
+/// // |R x|² = xᵀMx, and |R⁻ᵀ x|² = xᵀM⁻¹x with M⁻¹ = [[8, −4], [−4, 5]] / 24
+/// let square = |x: Vec<f64>| x.iter().map(|x| x * x).sum::<f64>();
+/// assert!((square(factors.applied(Ltdl::multiply_root, &x)?) - 21.0).abs() < 1e-14);
+/// assert!((square(factors.applied(Ltdl::solve_root_transposed, &x)?) - 5.0 / 24.0).abs() < 1e-15);
+/// assert!((factors.log_determinant() - 24.0_f64.ln()).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 impl<T: Real> Ltdl<T> {
     /// x ← L x, with the unit lower triangular factor L.
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
-    ///
-    /// ```
-    /// use featherbench_dynamics::TreeSparse;
-    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
-    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
-    /// let factors = matrix.into_ltdl()?;
-    /// let mut x = [1.0, 1.0];
-    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
-    /// factors.multiply_lower(&mut x)?;
-    /// assert_eq!(x, [1.0, 1.5]);
-    /// // L⁻¹ undoes it.
-    /// factors.solve_lower(&mut x)?;
-    /// assert_eq!(x, [1.0, 1.0]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn multiply_lower(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("vector x", self.matrix.size(), x.len())?;
         triangular::multiply::<T, true>(&self.matrix, x);
@@ -42,18 +47,6 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
-    ///
-    /// ```
-    /// use featherbench_dynamics::TreeSparse;
-    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
-    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
-    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
-    /// let factors = matrix.into_ltdl()?;
-    /// let mut x = [1.0, 1.0];
-    /// factors.multiply_lower_transposed(&mut x)?;
-    /// assert_eq!(x, [1.5, 1.0]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn multiply_lower_transposed(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("vector x", self.matrix.size(), x.len())?;
         triangular::multiply_transposed::<T, true>(&self.matrix, x);
@@ -64,18 +57,6 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
-    ///
-    /// ```
-    /// use featherbench_dynamics::TreeSparse;
-    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
-    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
-    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
-    /// let factors = matrix.into_ltdl()?;
-    /// let mut x = [1.0, 1.0];
-    /// factors.solve_lower(&mut x)?;
-    /// assert_eq!(x, [1.0, 0.5]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn solve_lower(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("right-hand side x", self.matrix.size(), x.len())?;
         match Blocked::find() {
@@ -90,18 +71,6 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
-    ///
-    /// ```
-    /// use featherbench_dynamics::TreeSparse;
-    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
-    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
-    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
-    /// let factors = matrix.into_ltdl()?;
-    /// let mut x = [1.0, 1.0];
-    /// factors.solve_lower_transposed(&mut x)?;
-    /// assert_eq!(x, [0.5, 1.0]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn solve_lower_transposed(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("right-hand side x", self.matrix.size(), x.len())?;
         match Blocked::find() {
@@ -115,17 +84,6 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
-    ///
-    /// ```
-    /// use featherbench_dynamics::TreeSparse;
-    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
-    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
-    /// let factors = matrix.into_ltdl()?;
-    /// let mut x = [1.0_f64, 1.0];
-    /// factors.multiply_root(&mut x)?;
-    /// assert!((x[0] * x[0] + x[1] * x[1] - 21.0).abs() < 1e-14);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn multiply_root(&self, x: &mut [T]) -> Result<(), DimensionError> {
         self.multiply_lower(x)?;
         self.scale_by_root(x, |x, root| x * root);
@@ -136,19 +94,6 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
-    ///
-    /// ```
-    /// use featherbench_dynamics::TreeSparse;
-    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
-    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
-    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
-    /// let factors = matrix.into_ltdl()?;
-    /// let mut x = [1.0_f64, 1.0];
-    /// factors.multiply_root_transposed(&mut x)?;
-    /// let due = [3.0_f64.sqrt() + 2.0_f64.sqrt(), 8.0_f64.sqrt()];
-    /// assert!(x.iter().zip(due).all(|(x, due)| (x - due).abs() < 1e-15));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn multiply_root_transposed(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("vector x", self.matrix.size(), x.len())?;
         self.scale_by_root(x, |x, root| x * root);
@@ -159,20 +104,6 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
-    ///
-    /// ```
-    /// use featherbench_dynamics::TreeSparse;
-    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
-    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
-    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
-    /// let factors = matrix.into_ltdl()?;
-    /// let mut x = [1.0_f64, 1.0];
-    /// factors.solve_root(&mut x)?;
-    /// // R = D^½ L gives the right side back.
-    /// factors.multiply_root(&mut x)?;
-    /// assert!(x.iter().all(|x| (x - 1.0).abs() < 1e-15));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn solve_root(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("right-hand side x", self.matrix.size(), x.len())?;
         self.scale_by_root(x, |x, root| x / root);
@@ -183,19 +114,6 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
-    ///
-    /// ```
-    /// use featherbench_dynamics::TreeSparse;
-    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
-    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
-    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
-    /// let factors = matrix.into_ltdl()?;
-    /// // bᵀM⁻¹b = 5/24, with M⁻¹ = [[8, −4], [−4, 5]] / 24
-    /// let mut x = [1.0_f64, 1.0];
-    /// factors.solve_root_transposed(&mut x)?;
-    /// assert!((x[0] * x[0] + x[1] * x[1] - 5.0 / 24.0).abs() < 1e-15);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn solve_root_transposed(&self, x: &mut [T]) -> Result<(), DimensionError> {
         self.solve_lower_transposed(x)?;
         self.scale_by_root(x, |x, root| x / root);
@@ -203,14 +121,6 @@ impl<T: Real> Ltdl<T> {
     }
 
     /// `ln det M = Σ ln D_k`. The determinant itself leaves the range of numbers for a few hundred dofs.
-    ///
-    /// ```
-    /// use featherbench_dynamics::TreeSparse;
-    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
-    /// matrix.values_mut().copy_from_slice(&[5.0_f64, 4.0, 8.0]);
-    /// assert!((matrix.into_ltdl()?.log_determinant() - 24.0_f64.ln()).abs() < 1e-15);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn log_determinant(&self) -> T
     where
         T: Logarithm,
@@ -222,19 +132,6 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
-    ///
-    /// ```
-    /// use featherbench_dynamics::TreeSparse;
-    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
-    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
-    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
-    /// let factors = matrix.into_ltdl()?;
-    /// use featherbench_dynamics::Ltdl;
-    /// let x = [1.0, 1.0];
-    /// assert_eq!(factors.applied(Ltdl::multiply_lower, &x)?, [1.0, 1.5]);
-    /// assert_eq!(factors.applied(Ltdl::solve_lower, &x)?, [1.0, 0.5]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn applied(
         &self,
         operation: impl FnOnce(&Self, &mut [T]) -> Result<(), DimensionError>,

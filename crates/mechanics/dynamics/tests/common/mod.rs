@@ -2,10 +2,11 @@
 
 use featherbench_dynamics::TreeSparse;
 use featherbench_model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model, Placement, Topology, integrate};
-use featherbench_robots::{Random, StateBatch};
+use featherbench_robots::{Family, Random, StateBatch};
 use featherbench_spatial::{Angle, Dual, Force, Lift, Motion, Quaternion, Real, Sym3, Vec3};
 use nalgebra::DMatrix;
 
+pub mod batched;
 mod by_reciprocal;
 pub mod dense;
 pub mod fused;
@@ -247,14 +248,20 @@ pub fn constant<T: Real>(values: &[T]) -> Vec<Dual<T>> {
     values.iter().map(|&value| Dual::constant(value)).collect()
 }
 
+/// The robot of a family.
+pub fn describe(spec: &str) -> Description {
+    Family::parse(spec).and_then(|family| family.generate()).unwrap_or_else(|bad| panic!("{spec}: {bad}"))
+}
+
+/// The model of a family's robot.
+pub fn generated(spec: &str) -> Model<f64> {
+    Model::build(&describe(spec)).expect("the robot is well formed")
+}
+
 /// The recipes' robots, and generated ones: every joint of the family `joints` on both bases, trees, chains, legs and hands.
 pub fn robots() -> Vec<(String, Model<f64>)> {
     let recipes = ROBOTS.iter().map(|(name, recipe)| (name.to_string(), build(recipe)));
-    let generated = GENERATED.iter().map(|name| {
-        let family = featherbench_robots::Family::parse(name).unwrap_or_else(|bad| panic!("{name}: {bad}"));
-        (name.to_string(), Model::build(&family.generate().expect("a family makes robots")).expect("the robot is well formed"))
-    });
-    recipes.chain(generated).collect()
+    recipes.chain(GENERATED.iter().map(|name| (name.to_string(), generated(name)))).collect()
 }
 
 const GENERATED: [&str; 12] = [

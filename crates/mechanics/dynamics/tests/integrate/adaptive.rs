@@ -2,15 +2,15 @@
 
 use crate::common;
 
-use common::{distance, larger, largest, within};
+use common::{distance, generated, larger, largest, within};
 use featherbench_dynamics::Error;
 use featherbench_dynamics::integrate::{DormandPrince, Dynamics, IntegrationError, Integrator, Passive, Statistics, Tolerance};
 use featherbench_model::{Axis, JointKind, Model, Topology, difference};
-use featherbench_robots::{Family, StateBatch};
+use featherbench_robots::StateBatch;
 use wide::f64x4;
 
 fn quadruped() -> (Model<f64>, StateBatch) {
-    let model = Model::build(&Family::parse("quadruped").unwrap().generate().unwrap()).unwrap();
+    let model = generated("quadruped");
     let states = StateBatch::random(&model, 4, 8);
     (model, states)
 }

@@ -2,22 +2,18 @@
 
 use crate::common;
 
-use common::{ROBOTS, build, distance, larger, largest, within};
+use common::{ROBOTS, build, distance, generated, larger, largest, within};
 use featherbench_dynamics::integrate::{
     Acceleration, Analytic, DormandPrince, Dynamics, ImplicitMidpoint, Instant, Integrator, Passive, RungeKutta4, SymplecticEuler, System,
 };
 use featherbench_dynamics::{Error, centroidal_momentum, energy};
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, difference};
-use featherbench_robots::{Family, StateBatch};
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{Angle, Force, Vec3};
 
 fn total_energy(model: &Model<f64>, q: &[f64], v: &[f64]) -> f64 {
     let energies = energy(model, q, v).unwrap();
     energies.kinetic + energies.potential
-}
-
-fn quadruped() -> Model<f64> {
-    Model::build(&Family::parse("quadruped").unwrap().generate().unwrap()).unwrap()
 }
 
 /// Linear and angular momentum about the world's origin, in world axes.
@@ -31,7 +27,7 @@ fn momentum(model: &Model<f64>, q: &[f64], v: &[f64]) -> [f64; 6] {
 /// A floating robot without gravity keeps its momentum: each integrator errs at its order.
 #[test]
 fn momentum_of_a_floating_robot_errs_at_the_order() {
-    let mut model = quadruped();
+    let mut model = generated("quadruped");
     model.gravity = Vec3::zero();
     let states = StateBatch::random(&model, 1, 8);
     let t = &model.topology;
@@ -194,7 +190,7 @@ impl System for Stiff {
 /// Newton's method solves the step of a stiff system, which the fixed-point iteration cannot; elsewhere both find the same step.
 #[test]
 fn newton_solves_what_is_stiff() {
-    let model = Model::build(&Family::parse("chain:n=4,layout=spatial").unwrap().generate().unwrap()).unwrap();
+    let model = generated("chain:n=4,layout=spatial");
     let states = StateBatch::random(&model, 1, 8);
     let start: Vec<f64> = states.q(0).iter().map(|q| 0.1 * q).collect();
     let mut integrator = ImplicitMidpoint::with_derivatives(&model.topology, 0);

@@ -2,13 +2,13 @@
 
 use crate::common;
 
-use common::{ROBOTS, build, distance, larger, largest, within};
+use common::{ROBOTS, build, distance, generated, larger, largest, within};
 use featherbench_dynamics::integrate::{
     Adjoint, Analytic, ByDuals, Cost, CostGradient, DormandPrince, Forward, ImplicitMidpoint, Instant, IntegrationError, Integrator,
     Linearisation, Linearise, Rollout, RungeKutta4, SymplecticEuler, System, Visit, rollout, sensitivity,
 };
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement, difference, integrate};
-use featherbench_robots::{Family, Random, StateBatch};
+use featherbench_robots::{Random, StateBatch};
 use featherbench_spatial::{Angle, DoubleDouble, Force, Real, Vec3};
 
 /// Motors at these dofs. The parameters are a damping, and the mass of the last body. A wrench that changes with time acts on the first.
@@ -77,8 +77,7 @@ fn arm(links: usize) -> Model<f64> {
 }
 
 fn cases() -> Vec<Case> {
-    let quadruped = Model::build(&Family::parse("quadruped").unwrap().generate().unwrap()).unwrap();
-    [("pendulum", arm(1), 0), ("2R arm", arm(2), 0), ("floating quadruped", quadruped, 6)]
+    [("pendulum", arm(1), 0), ("2R arm", arm(2), 0), ("floating quadruped", generated("quadruped"), 6)]
         .into_iter()
         .map(|(name, model, passive)| Case::new(name, model, passive))
         .collect()
