@@ -1,4 +1,4 @@
-//! A finding: what a row says of a robot, in a form that can be asked again of a simpler robot.
+//! A failure: what a row says is wrong with a robot, in a form that can be asked again of a simpler robot.
 //!
 //! The study of the row compares the simpler robot too, and its gates judge. So a reduced case has the measure, the bound and the known
 //! deviation of the row. The truth is the reference where the study takes our answers ([`Agreement`]).
@@ -68,7 +68,7 @@ impl Kind {
     }
 }
 
-/// A finding on one robot.
+/// A failure on one robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
     /// The measure; one where there is none.
@@ -112,7 +112,7 @@ impl Failure {
         })
     }
 
-    /// The finding at the first state of a robot; `None` if it is not there. The robot has the name of the one that the finding was made on:
+    /// The failure at the first state of a robot; `None` if it is not there. The robot has the name of the one that the failure was seen on:
     /// the size of a known deviation is that of a name.
     pub fn shown(&self, engine: &dyn Engine, gates: &Gates, robot: &Robot) -> Option<Shown> {
         // Some properties are those at a state of rest, which is the second of two.

@@ -1,7 +1,6 @@
 //! Programs in Drake's Python interface. A joint that Drake lacks is a chain of its own with massless bodies between, as our oracle builds it.
 
-use super::{Interface, Theirs, list, number, rows};
-use featherbench_bench::Robot;
+use super::{Interface, Theirs, list, number};
 use featherbench_model::{BodyDescription, JointType};
 use featherbench_rbd::Convention;
 
@@ -91,12 +90,8 @@ def inverse(acceleration):
         ("mass_matrix", "inverse_dynamics", "plant.CalcMassMatrixViaInverseDynamics(at())"),
         ("fd", "aba", "plant.get_generalized_acceleration_output_port().Eval(at())"),
     ],
-    theirs,
+    theirs: |robot| Theirs::of(robot, Convention::Drake),
 };
-
-fn theirs(robot: &Robot) -> Option<Theirs> {
-    Theirs::of(robot, Convention::Drake)
-}
 
 fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
     let body = bodies.get(at)?;
@@ -120,15 +115,5 @@ fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
         return None;
     }
     let armature = if armed { format!(", {}", list(&body.joint.armature)) } else { String::new() };
-    let place = &body.joint.placement;
-    Some(format!(
-        "add({}, [{joints}], {:?}, {}, {}, {}, {}, {}{armature})\n",
-        super::parent(body),
-        body.name,
-        rows(&place.rotation),
-        list(&place.translation),
-        number(body.mass),
-        list(&body.com),
-        rows(&super::full(body.inertia))
-    ))
+    Some(super::add(body, &format!("[{joints}]"), body, &body.joint.placement.translation, &armature))
 }

@@ -167,6 +167,14 @@ fn parent(body: &BodyDescription) -> usize {
     body.parent.map_or(0, |parent| parent + 1)
 }
 
+/// The call that adds a body behind the parent of the first of its chain: joints, name, place, position, mass and inertia, and what else an
+/// engine takes.
+fn add(first: &BodyDescription, joints: &str, body: &BodyDescription, position: &[f64; 3], more: &str) -> String {
+    let held = format!("{}, {}, {}", number(body.mass), list(&body.com), rows(&full(body.inertia)));
+    let turn = rows(&first.joint.placement.rotation);
+    format!("add({}, {joints}, {:?}, {turn}, {}, {held}{more})\n", parent(first), body.name, list(position))
+}
+
 /// The nine numbers of a tensor (xx, xy, xz, yy, yz, zz).
 fn full([xx, xy, xz, yy, yz, zz]: [f64; 6]) -> [f64; 9] {
     [xx, xy, xz, xy, yy, yz, xz, yz, zz]

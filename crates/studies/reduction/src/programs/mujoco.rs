@@ -1,8 +1,7 @@
 //! Programs in MuJoCo's Python interface. A joint of several degrees of freedom is slides and hinges in one body, and so is a massless body that is
 //! only a joint before its child, as our oracle builds them.
 
-use super::{Interface, Theirs, list, number, rows};
-use featherbench_bench::Robot;
+use super::{Interface, Theirs, list};
 use featherbench_model::{BodyDescription, JointType, Placement};
 use featherbench_rbd::Convention;
 use featherbench_spatial::{Mat3, Vec3};
@@ -92,12 +91,8 @@ def recursive(acceleration):
         ("mass_matrix", "crb", "mass_matrix()"),
         ("fd", "forward", "at().qacc.copy()"),
     ],
-    theirs,
+    theirs: |robot| Theirs::of(robot, Convention::MuJoCo),
 };
-
-fn theirs(robot: &Robot) -> Option<Theirs> {
-    Theirs::of(robot, Convention::MuJoCo)
-}
 
 fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
     if folds(bodies, at) {
@@ -114,17 +109,7 @@ fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
     let place = chain.first()?.joint.placement;
     let way = Mat3::from_array(place.rotation) * Vec3::from_array(way(chain.get(1..)?));
     let position = (Vec3::from_array(place.translation) + way).to_array();
-    Some(format!(
-        "add({}, [{}], {:?}, {}, {}, {}, {}, {})\n",
-        super::parent(chain.first()?),
-        joints?.join(", "),
-        body.name,
-        rows(&place.rotation),
-        list(&position),
-        number(body.mass),
-        list(&body.com),
-        rows(&super::full(body.inertia))
-    ))
+    Some(super::add(chain.first()?, &format!("[{}]", joints?.join(", ")), body, &position, ""))
 }
 
 /// Whether a body is only a joint before its one child, with the same axes.

@@ -1,7 +1,6 @@
 //! Programs in Pinocchio's Python interface. A joint about an axis of its frame has the aligned form, as our oracle builds it.
 
-use super::{Interface, Theirs, list, number, rows};
-use featherbench_bench::Robot;
+use super::{Interface, Theirs, list, number};
 use featherbench_model::{BodyDescription, JointType};
 use featherbench_rbd::Convention;
 
@@ -59,12 +58,8 @@ def full(upper):
         ("fd_dv", "aba_derivatives", "pin.computeABADerivatives(model, data, q, v, tau)[1]"),
         ("coriolis_matrix", "coriolis_matrix", "pin.computeCoriolisMatrix(model, data, q, v)"),
     ],
-    theirs,
+    theirs: |robot| Theirs::of(robot, Convention::Pinocchio),
 };
-
-fn theirs(robot: &Robot) -> Option<Theirs> {
-    Theirs::of(robot, Convention::Pinocchio)
-}
 
 fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
     let body = bodies.get(at)?;
@@ -83,17 +78,7 @@ fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
         JointType::Translation => "pin.JointModelTranslation()".into(),
         JointType::EulerZyx => "pin.JointModelSphericalZYX()".into(),
     };
-    let place = &body.joint.placement;
-    Some(format!(
-        "add({}, {joint}, {:?}, {}, {}, {}, {}, {})\n",
-        super::parent(body),
-        body.name,
-        rows(&place.rotation),
-        list(&place.translation),
-        number(body.mass),
-        list(&body.com),
-        rows(&super::full(body.inertia))
-    ))
+    Some(super::add(body, &joint, body, &body.joint.placement.translation, ""))
 }
 
 /// A joint of one degree of freedom about or along an axis: the aligned form where the axis is exactly one of the frame's.

@@ -1,12 +1,7 @@
 use super::*;
-use featherbench_bench::Gates;
+use featherbench_doubles::gates;
 use featherbench_results::Verdict;
 use serde_json::json;
-
-fn gates() -> Gates {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../ci/gates.toml");
-    Gates::parse(&std::fs::read_to_string(&path).unwrap(), &path).unwrap()
-}
 
 fn cell(candidates: &[(&str, &str, bool)]) -> Cell {
     let of = |(engine, method, control): &(&str, &str, bool)| Candidate::new(engine, method, *control);
@@ -41,7 +36,7 @@ const GOOD: [[f64; 3]; 4] = [[1e-8, 9e-9, f64::NAN]; 4];
 
 #[test]
 fn ratios_are_over_the_reference() {
-    let rows = rows::rows(&gates(), &cell(&FOUR), &outcome([100.0, 300.0, 100.0, 250.0], GOOD));
+    let rows = rows::rows(&gates(""), &cell(&FOUR), &outcome([100.0, 300.0, 100.0, 250.0], GOOD));
     let ratio = find(&rows, "peer", "ratio").unwrap();
     assert_eq!((ratio.value, ratio.ci_low, ratio.valid), (Some(2.5), Some(2.5), true));
     assert_eq!(find(&rows, "featherbench", "control").unwrap().value, Some(1.0));
@@ -51,11 +46,11 @@ fn ratios_are_over_the_reference() {
 
 #[test]
 fn a_noisy_experiment_has_no_valid_time() {
-    let rows = rows::rows(&gates(), &cell(&FOUR), &outcome([100.0, 300.0, 110.0, 250.0], GOOD));
+    let rows = rows::rows(&gates(""), &cell(&FOUR), &outcome([100.0, 300.0, 110.0, 250.0], GOOD));
     let times: Vec<&Row> = rows.iter().filter(|row| ["ns_per_call", "ratio", "control"].contains(&row.metric.as_str())).collect();
     assert!(times.len() == 6 && times.iter().all(|row| !row.valid), "{times:?}");
     let alone = cell(&FOUR[..2]);
-    let uncontrolled = rows::rows(&gates(), &alone, &Outcome::Values(vec![]));
+    let uncontrolled = rows::rows(&gates(""), &alone, &Outcome::Values(vec![]));
     assert_eq!(uncontrolled[0].verdict, Verdict::Error);
 }
 
@@ -64,16 +59,16 @@ fn an_answer_that_is_not_good_enough_has_no_time() {
     let mut told = GOOD;
     told[3] = Told::NONE.to_values();
     let nothing = outcome([100.0, 300.0, 100.0, f64::NAN], told);
-    let rows_of_peer = rows::rows(&gates(), &cell(&FOUR), &nothing);
+    let rows_of_peer = rows::rows(&gates(""), &cell(&FOUR), &nothing);
     assert_eq!(find(&rows_of_peer, "peer", "residual").unwrap().verdict, Verdict::Info);
     assert!(find(&rows_of_peer, "peer", "ns_per_call").is_none());
     told = GOOD;
     told[0] = Told::NONE.to_values();
-    let ours = rows::rows(&gates(), &cell(&FOUR), &outcome([100.0; 4], told));
+    let ours = rows::rows(&gates(""), &cell(&FOUR), &outcome([100.0; 4], told));
     assert_eq!(find(&ours, "featherbench", "residual").unwrap().verdict, Verdict::Error);
     told = GOOD;
     told[0][1] = 2e-8;
-    let ours = rows::rows(&gates(), &cell(&FOUR), &outcome([100.0; 4], told));
+    let ours = rows::rows(&gates(""), &cell(&FOUR), &outcome([100.0; 4], told));
     assert_eq!(find(&ours, "featherbench", "residual").unwrap().verdict, Verdict::Fail);
 }
 
@@ -90,7 +85,7 @@ fn an_own_model_is_told_apart() {
     cell.params["candidates"][3]["own_model"] = json!({"model": "soft", "limit": "soft_newton", "time": "all"});
     let mut told = GOOD;
     told[3] = [1e-6, 0.3, 4e-9];
-    let rows = rows::rows(&gates(), &cell, &outcome([100.0, 200.0, 100.0, 250.0], told));
+    let rows = rows::rows(&gates(""), &cell, &outcome([100.0, 200.0, 100.0, 250.0], told));
     let residual = find(&rows, "peer", "residual").unwrap();
     assert_eq!((residual.value, residual.verdict), (Some(0.3), Verdict::Info));
     assert!(residual.params.contains("\"model\":\"soft\""));
@@ -99,7 +94,7 @@ fn an_own_model_is_told_apart() {
     let ratio = find(&rows, "peer", "own_model_ratio").unwrap();
     assert_eq!((ratio.value, ratio.reference.as_str()), (Some(1.25), "featherbench block_gauss_seidel_whole"));
     told[3] = Told::NONE.to_values();
-    let rows = rows::rows(&gates(), &cell, &outcome([100.0, 200.0, 100.0, f64::NAN], told));
+    let rows = rows::rows(&gates(""), &cell, &outcome([100.0, 200.0, 100.0, f64::NAN], told));
     assert!(find(&rows, "peer", "residual").unwrap().reason.contains("its own model"));
 }
 
@@ -129,7 +124,7 @@ fn a_robot_is_what_its_problems_are_of() {
 /// Our own methods reach the target on a real robot, by a tolerance that the residual confirms.
 #[test]
 fn our_methods_reach_the_target() {
-    let gates = gates();
+    let gates = gates("");
     let context = Context { robots: &[], engines: &[], gates: &gates, seed: 1 };
     let landed = Landed::of(Stand::Quadruped(1), 1).unwrap();
     assert!(landed.problems.len() >= 10, "{}", landed.problems.len());
