@@ -20,7 +20,7 @@ fn wrong_numbers_are_seen() {
 
 /// The committed files are what the code describes: `cargo run -p featherbench-registry --example soft_robots` writes them.
 #[test]
-fn files_of_soft_robots_are_those_of_the_library() {
+fn files_of_soft_robots_are_those_of_the_code() {
     let models = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../datasets/models");
     for robot in [featherbench_continua::examples::gripper(), featherbench_continua::examples::cable_arm()] {
         let path = models.join("soft").join(format!("{}.json", robot.name));
