@@ -38,12 +38,7 @@ pub struct WholeArgs {
 impl WholeArgs {
     /// The run that is planned.
     pub fn run(&self) -> RunArgs {
-        RunArgs {
-            suite: self.suite.clone(),
-            asked: self.asked.clone(),
-            costs: self.costs.clone(),
-            ..RunArgs::default_suite()
-        }
+        RunArgs { suite: self.suite.clone(), asked: self.asked.clone(), costs: self.costs.clone(), ..RunArgs::default_suite() }
     }
 }
 
