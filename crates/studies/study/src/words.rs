@@ -2,7 +2,7 @@
 
 /// The names that a study writes into rows, each with its meaning. A `*` in a name stands for any text.
 pub struct Words {
-    /// Names in the column `quantity`, beside those of [`labels::QUANTITIES`](featherbench_report::labels::QUANTITIES).
+    /// Names in the column `quantity`, beside those of [`Quantity`](featherbench_results::Quantity).
     pub quantities: &'static [(&'static str, &'static str)],
     /// Names in the column `metric`.
     pub metrics: &'static [(&'static str, &'static str)],
