@@ -1,6 +1,6 @@
 //! A robot as a user describes it: plain numbers, no scalar, no compiled order.
 
-use crate::{Continuum, DescribedResidual, Loop, Uncertain};
+use crate::{Continuum, DescribedResidual, JointType, Loop, Uncertain};
 
 /// A robot: bodies, each with the joint that carries it, and gravity.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -71,50 +71,6 @@ pub struct JointDescription {
     pub effort: Vec<f64>,
 }
 
-/// The kind of a described joint. Axes are unit vectors in the joint frame: a written axis stands for the unit vector along it.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub enum JointType {
-    /// No motion: the body is merged into its parent.
-    #[default]
-    Fixed,
-    /// Rotation about an axis (continuous joints are revolute joints without limits).
-    Revolute {
-        /// The axis of rotation.
-        axis: [f64; 3],
-    },
-    /// Translation along an axis.
-    Prismatic {
-        /// The direction of translation.
-        axis: [f64; 3],
-    },
-    /// Rotation about an axis with a translation along it.
-    Helical {
-        /// The axis of the screw.
-        axis: [f64; 3],
-        /// Translation per angle, m/rad.
-        pitch: f64,
-    },
-    /// Rotation about a point; q is a quaternion (x, y, z, w), v the angular velocity in body axes.
-    Spherical,
-    /// Free motion; q is position and quaternion, v is [linear; angular] in body axes.
-    Free,
-    /// Translation in the joint frame's xy-plane, then rotation about z.
-    Planar,
-    /// Rotation about the joint frame's x, then about the moved y.
-    Universal,
-    /// Translation along the joint frame's x, y and z.
-    Translation,
-    /// Rotation about an axis and translation along it, independent of each other; q is angle and distance. The two commute.
-    /// So their order is that of the numbers alone: the angle first, as in every 6-vector here.
-    Cylindrical {
-        /// The axis of both.
-        axis: [f64; 3],
-    },
-    /// Rotation about the joint frame's z, then about the moved y, then about the moved x; q is the three angles, v their rates.
-    /// At ±90° about y the first and third axis coincide. Then the mass matrix is singular without armature.
-    EulerZyx,
-}
-
 /// A constant rigid placement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
@@ -148,62 +104,6 @@ pub struct Provenance {
     pub readme: String,
     /// What was changed (merged links, dropped elements).
     pub notes: Vec<String>,
-}
-
-impl JointType {
-    /// Length of the joint's part of q.
-    pub fn nq(self) -> usize {
-        match self {
-            Self::Fixed => 0,
-            Self::Revolute { .. } | Self::Prismatic { .. } | Self::Helical { .. } => 1,
-            Self::Universal | Self::Cylindrical { .. } => 2,
-            Self::Planar | Self::Translation | Self::EulerZyx => 3,
-            Self::Spherical => 4,
-            Self::Free => 7,
-        }
-    }
-
-    /// Degrees of freedom: length of the joint's part of v.
-    pub fn nv(self) -> usize {
-        match self {
-            Self::Spherical => 3,
-            Self::Free => 6,
-            other => other.nq(),
-        }
-    }
-
-    /// The word for it in a description file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Fixed => "fixed",
-            Self::Revolute { .. } => "revolute",
-            Self::Prismatic { .. } => "prismatic",
-            Self::Helical { .. } => "helical",
-            Self::Spherical => "spherical",
-            Self::Free => "free",
-            Self::Planar => "planar",
-            Self::Universal => "universal",
-            Self::Translation => "translation",
-            Self::Cylindrical { .. } => "cylindrical",
-            Self::EulerZyx => "euler_zyx",
-        }
-    }
-
-    /// The axis, for the kinds that have one.
-    pub fn axis(self) -> Option<[f64; 3]> {
-        match self {
-            Self::Revolute { axis } | Self::Prismatic { axis } | Self::Helical { axis, .. } | Self::Cylindrical { axis } => Some(axis),
-            _ => None,
-        }
-    }
-
-    /// The axis, to be changed.
-    pub(crate) fn axis_mut(&mut self) -> Option<&mut [f64; 3]> {
-        match self {
-            Self::Revolute { axis } | Self::Prismatic { axis } | Self::Helical { axis, .. } | Self::Cylindrical { axis } => Some(axis),
-            _ => None,
-        }
-    }
 }
 
 impl Default for Placement {

@@ -172,7 +172,6 @@ fn compile<P: Real>(kind: JointType) -> Vec<Primitive<P>> {
         Primitive { kind: JointKind::Prismatic(axis), label, subspace: Motion::new(Vec3::zero(), direction) }
     };
     let as_described = |kind: JointKind, subspace: Motion<P>| Primitive { kind, label: Label::Z, subspace };
-    let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     match kind {
         JointType::Fixed => Vec::new(),
         JointType::Revolute { axis } => vec![turn(axis)],
@@ -183,10 +182,6 @@ fn compile<P: Real>(kind: JointType) -> Vec<Primitive<P>> {
         }
         JointType::Spherical => vec![as_described(JointKind::Spherical, Motion::zero())],
         JointType::Free => vec![as_described(JointKind::Free, Motion::zero())],
-        JointType::Planar => vec![slide(x), slide(y), turn(z)],
-        JointType::Universal => vec![turn(x), turn(y)],
-        JointType::Translation => vec![slide(x), slide(y), slide(z)],
-        JointType::Cylindrical { axis } => vec![turn(axis), slide(axis)],
-        JointType::EulerZyx => vec![turn(z), turn(y), turn(x)],
+        row => row.row().into_iter().map(|joint| if joint.turns { turn(joint.axis) } else { slide(joint.axis) }).collect(),
     }
 }

@@ -1,5 +1,6 @@
 //! Classes of robots, by their properties: which robots a known deviation, or a lack of an engine, is about.
 
+use featherbench_model::JointType;
 use featherbench_results::{Base, Feature, Properties};
 use serde::Deserialize;
 
@@ -36,10 +37,6 @@ enum Armature {
     On(Vec<String>),
 }
 
-/// The kinds of joints of descriptions.
-const JOINTS: [&str; 11] =
-    ["fixed", "revolute", "prismatic", "helical", "spherical", "free", "planar", "universal", "translation", "cylindrical", "euler_zyx"];
-
 impl RobotClass {
     /// Whether a robot is in the class. Nothing is known of a robot without properties: it is in no class that has a condition on them.
     pub fn holds(&self, robot: &str, properties: Option<&Properties>) -> bool {
@@ -54,7 +51,7 @@ impl RobotClass {
             Some(Armature::Any(_)) | None => &[],
         };
         let kinds = self.joint.iter().flatten().chain(with_armature);
-        kinds.map(String::as_str).find(|kind| !JOINTS.contains(kind))
+        kinds.map(String::as_str).find(|kind| !JointType::names().contains(kind))
     }
 
     /// The names of robots in it: exceptions that no property explains.

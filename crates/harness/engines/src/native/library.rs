@@ -195,7 +195,7 @@ fn body(body: &featherbench_model::BodyDescription) -> Result<Body, NoAnswer> {
         JointType::Free => (4, [0.0; 3], 0.0),
         JointType::Planar => (5, [0.0; 3], 0.0),
         JointType::Universal => (6, [0.0; 3], 0.0),
-        JointType::Fixed | JointType::Translation | JointType::Cylindrical { .. } | JointType::EulerZyx => {
+        _ => {
             let reason = format!("native oracles take no {} joint ({})", body.joint.kind.name(), body.joint.name);
             return Err(NoAnswer::NotOffered(reason));
         }

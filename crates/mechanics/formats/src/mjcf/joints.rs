@@ -1,7 +1,7 @@
 //! The joints of a body in MJCF: one or several for each joint of a description.
 
 use crate::export::Reason;
-use featherbench_model::{BodyDescription, JointDescription, JointType};
+use featherbench_model::{BodyDescription, JointDescription, JointType, OneDof};
 use std::ops::Range;
 
 /// An MJCF joint: a part of a description's joint.
@@ -18,30 +18,27 @@ pub(super) struct Part<'a> {
     pub dofs: Range<usize>,
 }
 
-const X: [f64; 3] = [1.0, 0.0, 0.0];
-const Y: [f64; 3] = [0.0, 1.0, 0.0];
-const Z: [f64; 3] = [0.0, 0.0, 1.0];
-
 /// The MJCF joints of a joint, from the parent outwards; or why there are none.
 pub(super) fn parts(joint: &JointDescription) -> Result<Vec<Part<'_>>, Reason> {
     let whole = |kind, axis| vec![Part { joint, suffix: "", kind, axis, dofs: 0..joint.kind.nv() }];
-    let row = |parts: &[(&'static str, &'static str, [f64; 3])]| {
-        let part = |(k, &(suffix, kind, axis))| Part { joint, suffix, kind, axis: Some(axis), dofs: k..k + 1 };
-        parts.iter().enumerate().map(part).collect()
-    };
     Ok(match joint.kind {
         JointType::Fixed => Vec::new(),
         JointType::Revolute { axis } => whole("hinge", Some(axis)),
         JointType::Prismatic { axis } => whole("slide", Some(axis)),
         JointType::Spherical => whole("ball", None),
         JointType::Free => whole("free", None),
-        JointType::Planar => row(&[("_x", "slide", X), ("_y", "slide", Y), ("_turn", "hinge", Z)]),
-        JointType::Universal => row(&[("_x", "hinge", X), ("_y", "hinge", Y)]),
-        JointType::Translation => row(&[("_x", "slide", X), ("_y", "slide", Y), ("_z", "slide", Z)]),
-        JointType::Cylindrical { axis } => row(&[("_turn", "hinge", axis), ("_along", "slide", axis)]),
-        JointType::EulerZyx => row(&[("_z", "hinge", Z), ("_y", "hinge", Y), ("_x", "hinge", X)]),
         JointType::Helical { .. } => {
             return Err(Reason::JointType { kind: "helical", advice: "keep the robot in the neutral format" });
+        }
+        row => {
+            let part = |(k, OneDof { suffix, turns, axis })| Part {
+                joint,
+                suffix,
+                kind: if turns { "hinge" } else { "slide" },
+                axis: Some(axis),
+                dofs: k..k + 1,
+            };
+            row.row().into_iter().enumerate().map(part).collect()
         }
     })
 }

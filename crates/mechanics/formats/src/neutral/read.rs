@@ -230,29 +230,16 @@ impl TryFrom<JointFields> for Joint {
     type Error = String;
     fn try_from(fields: JointFields) -> Result<Self, String> {
         let JointFields { name, kind, axis, pitch, placement, armature, damping, friction, lower, upper, velocity, effort } = fields;
-        let needed_axis = axis.ok_or_else(|| format!("{kind} joint '{name}' has no 'axis'; give a unit vector"));
-        let axis_is_given = axis.is_some();
-        let described = match kind.as_str() {
-            "revolute" => JointType::Revolute { axis: needed_axis? },
-            "prismatic" => JointType::Prismatic { axis: needed_axis? },
-            "helical" => {
-                let pitch = pitch.ok_or_else(|| format!("helical joint '{name}' has no 'pitch'; give metres per radian"))?;
-                JointType::Helical { axis: needed_axis?, pitch }
-            }
-            "fixed" => JointType::Fixed,
-            "spherical" => JointType::Spherical,
-            "free" => JointType::Free,
-            "planar" => JointType::Planar,
-            "universal" => JointType::Universal,
-            "translation" => JointType::Translation,
-            "cylindrical" => JointType::Cylindrical { axis: needed_axis? },
-            "euler_zyx" => JointType::EulerZyx,
-            other => {
-                let known = "fixed, revolute, prismatic, helical, spherical, free, planar, universal, translation, cylindrical, euler_zyx";
-                return Err(format!("joint '{name}' has the unknown type '{other}'; choose one of {known}"));
-            }
+        let Some(described) = JointType::named(&kind, axis.unwrap_or_default(), pitch.unwrap_or_default()) else {
+            return Err(format!("joint '{name}' has the unknown type '{kind}'; choose one of {}", JointType::names().join(", ")));
         };
-        if axis_is_given && described.axis().is_none() {
+        if pitch.is_none() && matches!(described, JointType::Helical { .. }) {
+            return Err(format!("helical joint '{name}' has no 'pitch'; give metres per radian"));
+        }
+        if axis.is_none() && described.axis().is_some() {
+            return Err(format!("{kind} joint '{name}' has no 'axis'; give a unit vector"));
+        }
+        if axis.is_some() && described.axis().is_none() {
             return Err(format!("{kind} joint '{name}' has an 'axis', which such a joint has not; remove it"));
         }
         // Other programs write a pitch of zero for every joint; that is not an error.

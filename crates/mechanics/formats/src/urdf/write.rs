@@ -84,13 +84,7 @@ fn body(xml: &mut Xml, robot: &Description, i: usize, mimic: Option<&Followed>) 
         JointType::Free => ("floating", None),
         JointType::Planar => ("planar", Some([0.0, 0.0, 1.0])),
         // The canonical form has no fixed joint, and the others gave an error before.
-        JointType::Fixed
-        | JointType::Helical { .. }
-        | JointType::Spherical
-        | JointType::Universal
-        | JointType::Translation
-        | JointType::Cylindrical { .. }
-        | JointType::EulerZyx => ("fixed", None),
+        _ => ("fixed", None),
     };
     open_joint(xml, &joint.name, kind, &joint.placement, parent(robot, body.parent), &body.name);
     if let Some(axis) = axis {

@@ -178,16 +178,5 @@ pub(super) const COMMON: [&str; 5] = ["revolute", "prismatic", "spherical", "pla
 pub(super) fn random_kind(random: &mut Random, word: &str) -> JointType {
     let axis = random.direction();
     let pitch = random.uniform(0.02, 0.2);
-    match word {
-        "prismatic" => JointType::Prismatic { axis },
-        "helical" => JointType::Helical { axis, pitch },
-        "spherical" => JointType::Spherical,
-        "planar" => JointType::Planar,
-        "universal" => JointType::Universal,
-        "translation" => JointType::Translation,
-        "cylindrical" => JointType::Cylindrical { axis },
-        "euler_zyx" => JointType::EulerZyx,
-        "free" => JointType::Free,
-        _ => JointType::Revolute { axis },
-    }
+    JointType::named(word, axis, pitch).unwrap_or(JointType::Revolute { axis })
 }

@@ -127,8 +127,6 @@ fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
         return None;
     }
     Some(match body.joint.kind {
-        // A joint of two would shift the numbers of the bodies.
-        JointType::Fixed | JointType::Cylindrical { .. } => return None,
         JointType::Revolute { axis } => add("Revolute", &format!(", Axis=[{}]", list(&axis))),
         JointType::Prismatic { axis } => add("Prismatic", &format!(", Axis=[{}]", list(&axis))),
         JointType::Helical { axis, pitch } => add("Screw", &format!(", Axis=[{}], Pitch=[2 * np.pi * {}]", list(&axis), number(pitch))),
@@ -138,5 +136,7 @@ fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
         JointType::Universal => add("Universal", ", Axis1=[[1.0, 0.0, 0.0]], Axis2=[[0.0, 1.0, 0.0]]"),
         JointType::Translation => add("Translational", ""),
         JointType::EulerZyx => add("Euler", ", turn=EULER"),
+        // Joints in a row would shift the numbers of the bodies.
+        _ => return None,
     })
 }

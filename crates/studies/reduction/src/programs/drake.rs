@@ -1,7 +1,7 @@
 //! Programs in Drake's Python interface. A joint that Drake lacks is a chain of its own with massless bodies between, as our oracle builds it.
 
 use super::{Interface, Theirs, list, number};
-use featherbench_model::{BodyDescription, JointType};
+use featherbench_model::{BodyDescription, JointType, OneDof};
 use featherbench_rbd::Convention;
 
 pub const DRAKE: Interface = Interface {
@@ -100,13 +100,14 @@ fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
         JointType::Revolute { axis } => format!("turn({})", list(&axis)),
         JointType::Prismatic { axis } => format!("slide({})", list(&axis)),
         JointType::Helical { axis, pitch } => format!("screw({}, {})", list(&axis), number(pitch)),
-        JointType::Cylindrical { axis } => format!("turn({0}), slide({0})", list(&axis)),
         JointType::Spherical => "tree.BallRpyJoint".into(),
         JointType::Free => "tree.QuaternionFloatingJoint".into(),
         JointType::Planar => "tree.PlanarJoint".into(),
         JointType::Universal => "tree.UniversalJoint".into(),
-        JointType::Translation => "slide(X), slide(Y), slide(Z)".into(),
-        JointType::EulerZyx => "turn(Z), turn(Y), turn(X)".into(),
+        row => {
+            let one = |one: OneDof| format!("{}({})", if one.turns { "turn" } else { "slide" }, super::axis(&one.axis));
+            row.row().into_iter().map(one).collect::<Vec<_>>().join(", ")
+        }
     };
     let armed = body.joint.armature.iter().any(|armature| *armature != 0.0);
     let has_motors = !matches!(body.joint.kind, JointType::Spherical | JointType::Free | JointType::Planar | JointType::Universal);

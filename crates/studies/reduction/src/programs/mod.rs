@@ -185,6 +185,12 @@ fn list(numbers: &[f64]) -> String {
     format!("{numbers:?}")
 }
 
+/// An axis: by its letter where it is exactly one of the frame's.
+fn axis(axis: &[f64; 3]) -> String {
+    let letter = ["X", "Y", "Z"].into_iter().zip([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]).find(|(_, unit)| unit == axis);
+    letter.map_or_else(|| list(axis), |(letter, _)| letter.into())
+}
+
 fn rows(m: &[f64; 9]) -> String {
     format!("[{}, {}, {}]", list(&m[..3]), list(&m[3..6]), list(&m[6..]))
 }

@@ -134,13 +134,9 @@ fn joints(body: &BodyDescription, others: &[BodyDescription]) -> Option<String> 
         JointType::Free if body.parent.is_some() || body.joint.armature.iter().any(|armature| *armature != 0.0) => return None,
         JointType::Revolute { axis } => vec![("HINGE", list(&axis))],
         JointType::Prismatic { axis } => vec![("SLIDE", list(&axis))],
-        JointType::Cylindrical { axis } => vec![("HINGE", list(&axis)), ("SLIDE", list(&axis))],
         JointType::Spherical => vec![("BALL", z)],
         JointType::Free => vec![("FREE", z)],
-        JointType::Planar => vec![("SLIDE", "X".into()), ("SLIDE", "Y".into()), ("HINGE", z)],
-        JointType::Universal => vec![("HINGE", "X".into()), ("HINGE", "Y".into())],
-        JointType::Translation => vec![("SLIDE", "X".into()), ("SLIDE", "Y".into()), ("SLIDE", z)],
-        JointType::EulerZyx => vec![("HINGE", z), ("HINGE", "Y".into()), ("HINGE", "X".into())],
+        row => row.row().iter().map(|one| (if one.turns { "HINGE" } else { "SLIDE" }, super::axis(&one.axis))).collect(),
     };
     // No negative zeros.
     let place = list(&way(others).map(|x| 0.0 - x));

@@ -1,7 +1,7 @@
 //! Programs in Pinocchio's Python interface. A joint about an axis of its frame has the aligned form, as our oracle builds it.
 
 use super::{Interface, Theirs, list, number};
-use featherbench_model::{BodyDescription, JointType};
+use featherbench_model::{BodyDescription, JointType, OneDof};
 use featherbench_rbd::Convention;
 
 pub const PINOCCHIO: Interface = Interface {
@@ -68,7 +68,6 @@ fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
         JointType::Revolute { axis } => about("Revolute", &axis, ""),
         JointType::Prismatic { axis } => about("Prismatic", &axis, ""),
         JointType::Helical { axis, pitch } => about("Helical", &axis, &number(pitch)),
-        JointType::Cylindrical { axis } => format!("chain({}, {})", about("Revolute", &axis, ""), about("Prismatic", &axis, "")),
         JointType::Universal => "pin.JointModelUniversal(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))".into(),
         JointType::Spherical => "pin.JointModelSpherical()".into(),
         JointType::Free => "pin.JointModelFreeFlyer()".into(),
@@ -77,6 +76,10 @@ fn body(bodies: &[BodyDescription], at: usize) -> Option<String> {
         JointType::Planar => "pin.JointModelPlanar()".into(),
         JointType::Translation => "pin.JointModelTranslation()".into(),
         JointType::EulerZyx => "pin.JointModelSphericalZYX()".into(),
+        row => {
+            let one = |one: OneDof| about(if one.turns { "Revolute" } else { "Prismatic" }, &one.axis, "");
+            format!("chain({})", row.row().into_iter().map(one).collect::<Vec<_>>().join(", "))
+        }
     };
     Some(super::add(body, &joint, body, &body.joint.placement.translation, ""))
 }

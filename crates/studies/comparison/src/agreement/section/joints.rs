@@ -6,6 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use featherbench_bench::params;
+use featherbench_model::JointType;
 use featherbench_report::map::{inside, outside};
 use featherbench_report::numbers::{decades, larger, listed, short};
 use featherbench_report::{Overview, Tally, engine as linked, labels, swatch, worst_first};
@@ -20,9 +21,6 @@ use crate::agreement::Params;
 const PREFIX: &str = "joints-";
 /// The suffix of a row with armature.
 const WITH_ARMATURE: &str = " with armature";
-/// Joint types in the order of the page; others follow in alphabetical order.
-const TYPES: [&str; 10] =
-    ["revolute", "prismatic", "helical", "spherical", "free", "planar", "universal", "translation", "cylindrical", "euler_zyx"];
 
 /// The table, and the data of its cells for the page's script.
 #[derive(Debug, Default, Serialize)]
@@ -125,7 +123,7 @@ impl<'a> Shown<'a> {
         let armature = parts.any(|part| part == "armature");
         let params: Params = params::of_row(row)?;
         let held = params.joints.iter().any(|joint| joint == kind);
-        let rank = TYPES.iter().position(|&known| known == kind).unwrap_or(TYPES.len());
+        let rank = JointType::names().iter().position(|&known| known == kind).unwrap_or(usize::MAX);
         held.then_some(Self { rank, kind, armature })
     }
 }

@@ -1,20 +1,17 @@
 //! The joint matrix: which engine's derivatives are right on which joint.
 
 use super::super::STUDY;
+use featherbench_model::JointType;
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, labels, opener, worst_first};
 use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Joint types in the order of the page.
-const TYPES: [&str; 10] =
-    ["revolute", "prismatic", "helical", "spherical", "free", "planar", "universal", "translation", "cylindrical", "euler_zyx"];
-
 /// The joint type of a robot named `joints-TYPE…`.
 fn kind(robot: &str) -> Option<&str> {
     let kind = robot.strip_prefix("joints-")?.split('-').next()?;
-    TYPES.into_iter().find(|known| *known == kind)
+    JointType::names().into_iter().find(|known| *known == kind)
 }
 
 /// Joint type × engine and quantity: the worst judged row over the robots named after the type. Nothing if the run has no such robots.
@@ -22,7 +19,7 @@ pub(super) fn table(overview: &Overview, rows: &[&Row]) -> Markup {
     let mut worst: BTreeMap<(usize, usize, (usize, &str)), &Row> = BTreeMap::new();
     for &row in rows.iter().filter(|row| row.verdict != Verdict::Info && row.metric == "true") {
         let (Some(kind), Some(engine)) = (kind(&row.robot), overview.engine(&row.engine)) else { continue };
-        let place = TYPES.iter().position(|known| *known == kind).unwrap_or(TYPES.len());
+        let place = JointType::names().iter().position(|known| *known == kind).unwrap_or(usize::MAX);
         let held = worst.entry((place, engine, labels::quantity_rank(&row.quantity))).or_insert(row);
         if worst_first(row) < worst_first(held) {
             *held = row;
@@ -40,7 +37,7 @@ pub(super) fn table(overview: &Overview, rows: &[&Row]) -> Markup {
                         @for (engine, (_, quantity)) in &columns { th.number scope="col" { (overview.engines[*engine]) br; (labels::quantity(quantity)) } }
                     } }
                     tbody { @for &place in &kinds { tr {
-                        th scope="row" { (TYPES[place]) }
+                        th scope="row" { (JointType::names()[place]) }
                         @for &(engine, quantity) in &columns {
                             td.number { @match worst.get(&(place, engine, quantity)) {
                                 Some(row) => (cell(overview, row)),
