@@ -202,10 +202,7 @@ fn joint_losses(joint: &JointDescription) -> Vec<Reason> {
         JointType::Revolute { .. } | JointType::Prismatic { .. } | JointType::Free | JointType::Planar | JointType::Fixed => None,
         JointType::Helical { .. } => missing("keep the robot in the neutral format"),
         JointType::Spherical => missing("describe it as three revolute joints, or keep the neutral format or MJCF"),
-        JointType::Universal => missing("describe it as two revolute joints, or keep the neutral format or MJCF"),
-        JointType::Translation => missing("describe it as three prismatic joints, or keep the neutral format or MJCF"),
-        JointType::Cylindrical { .. } => missing("describe it as a revolute and a prismatic joint, or keep the neutral format or MJCF"),
-        JointType::EulerZyx => missing("describe it as three revolute joints, or keep the neutral format or MJCF"),
+        _ => missing("describe it as revolute and prismatic joints in a row, or keep the neutral format or MJCF"),
     };
     let mut reasons = Vec::from_iter(joint_type);
     if joint.armature.iter().any(|&x| x != 0.0) {
