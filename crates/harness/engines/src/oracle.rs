@@ -110,7 +110,7 @@ impl Oracle {
         self
     }
 
-    /// A session that nobody uses, or a new one.
+    /// A free session, or a new one.
     fn session(&self) -> Result<Lent<'_>, NoAnswer> {
         let idle = self.lock().pop();
         let session = match idle {

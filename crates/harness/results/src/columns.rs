@@ -76,8 +76,8 @@ impl Field for Verdict {
     const WORDS: &'static [&'static str] = Self::WORDS;
 }
 
-/// Makes [`Row`] and [`COLUMNS`]: of each column its name, its type, the field of an empty row if it is not the type's own default, the unit
-/// of numbers, and what it means.
+/// Makes [`Row`] and [`COLUMNS`]. Each column has its name, its type, the field of an empty row if the type has another default, its unit
+/// and what it means.
 macro_rules! columns {
     ($($name:ident: $type:ty $(= $empty:expr)? $(, [$unit:literal])?, $description:literal;)+) => {
         /// One result: a field for each of [`COLUMNS`], in the same order.

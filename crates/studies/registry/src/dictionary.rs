@@ -139,14 +139,18 @@ mod tests {
         let words = |path: &Path| path.ends_with("words.rs") || path.ends_with("registry/src/dictionary.rs");
         let files: Vec<String> = files.into_iter().filter(|(path, _)| !words(path)).map(|(_, text)| text).collect();
         // What is between two quotes.
-        let written: BTreeSet<&str> = files.iter().flat_map(|text| text.split('"').skip(1)).collect();
+        let quoted: BTreeSet<&str> = files.iter().flat_map(|text| text.split('"').skip(1)).collect();
+        // A parameter may be the field of a type.
+        let is_name = |c: char| c.is_alphanumeric() || c == '_';
+        let fields: BTreeSet<&str> =
+            files.iter().flat_map(|text| text.split(": ")).filter_map(|text| text.rsplit(|c| !is_name(c)).next()).collect();
         for entry in STUDIES {
             let words = &entry.words;
             for (name, meaning) in words.quantities.iter().chain(words.metrics).chain(words.params).chain(&PARAMS) {
                 assert!(!meaning.is_empty(), "{}: {name}", entry.name);
                 let found = match name.split_once('*') {
-                    None => written.contains(name),
-                    Some((begin, _)) => written.range(begin..).next().is_some_and(|text| text.starts_with(begin)),
+                    None => quoted.contains(name) || words.params.iter().any(|(param, _)| param == name) && fields.contains(name),
+                    Some((begin, _)) => quoted.range(begin..).next().is_some_and(|text| text.starts_with(begin)),
                 };
                 assert!(found, "{}: no source writes {name}; take it out of words.rs", entry.name);
             }

@@ -125,7 +125,7 @@ pub fn answer(engine: &dyn Engine, robot: &Robot, quantity: Quantity, method: &s
     Ok(values)
 }
 
-/// Whether as many numbers came as are due.
+/// Compares the count of the numbers that came with the count that is due.
 ///
 /// # Errors
 /// [`NoAnswer::Failed`] with both counts.
