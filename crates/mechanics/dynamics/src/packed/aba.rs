@@ -131,8 +131,7 @@ impl PackedAba {
                 let subspace = frame.subspace.lane(k);
                 let alone = (own.lane(k), model.blocks[b].subspace_inertia.lane(k) + model.blocks[b].armature.lane(k));
                 let whole = Passed { inertia: rigid + below.inertia, p };
-                let (up, screw, pivot) = eliminate_screw(joint.kind, &whole, &below.inertia, alone, subspace, tau[joint.v], d);
-                smallest.note(joint.v, pivot);
+                let (up, screw) = eliminate_screw(joint.kind, &whole, &below.inertia, alone, subspace, tau[joint.v], d, joint.v, smallest);
                 eliminated[i] = screw;
                 up
             } else {
@@ -230,8 +229,9 @@ fn translated(f: Force<f64>, d: Vec3<f64>) -> Force<f64> {
     Force::new(d.cross_add(f.lin, f.ang), f.lin)
 }
 
-/// Pass 2 for a one-dof joint: what its parent takes, what pass 3 needs, and the pivot D.
+/// Pass 2 for a one-dof joint: what its parent takes, and what pass 3 needs.
 #[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "one joint's numbers, each of its own kind")]
 fn eliminate_screw(
     kind: JointKind,
     whole: &Passed,
@@ -240,7 +240,9 @@ fn eliminate_screw(
     subspace: Motion<f64>,
     tau: f64,
     displacement: Vec3<f64>,
-) -> (Passed, Eliminated, f64) {
+    dof: usize,
+    smallest: &mut Pivot,
+) -> (Passed, Eliminated) {
     let Passed { inertia, p } = whole;
     // U = Iᴬ S,  D = Sᵀ U + armature,  u = τ − Sᵀ pᴬ; of the body alone I S and Sᵀ I S are known
     let (along, d, s_p) = if matches!(kind, JointKind::Revolute(_)) {
@@ -251,13 +253,14 @@ fn eliminate_screw(
         (along, subspace.dot(along), subspace.dot(*p))
     };
     let (upper_u, d) = (along + own, d + own_inertia);
+    smallest.note(dof, d);
     let d_inverse = 1.0 / d;
     let d_inverse_u = (tau - s_p) * d_inverse;
     // at the parent's origin
     let inertia = inertia.subtract_rank_one(upper_u * d_inverse, upper_u).translate(displacement);
     let up = Passed { inertia, p: translated(upper_u.scale_add(d_inverse_u, *p), displacement) };
     let upper_u = translated(upper_u, displacement);
-    (up, Eliminated::Screw { u_d_inverse: upper_u * d_inverse, d_inverse_u }, d)
+    (up, Eliminated::Screw { u_d_inverse: upper_u * d_inverse, d_inverse_u })
 }
 
 /// Pass 2 for a spherical or free joint, in body axes: what its parent takes, still at the joint's origin, and what pass 3 needs.
