@@ -112,9 +112,9 @@ const MATRIX: &[Extent] = &[Dofs, Dofs];
 const SPARSE: &[Extent] = &[Stored];
 const BODY_VECTORS: &[Extent] = &[Bodies, Number(6)];
 
-/// Makes the enum and its table. Each quantity has what it is in words, its name in rows, its title on pages, the shape of an answer, the
-/// measure of its error, and that measure in words, unless it is only counted or timed. Some are not asked at all states, or are in single
-/// precision.
+/// Makes the enum and its table. Each quantity has what it is in words, its name in rows, its title on pages, and the shape of an answer. It
+/// has the measure of its error, and that measure in words unless it is only counted or timed. Some are not asked at all states, or are in
+/// single precision.
 macro_rules! quantities {
     ($($words:literal $variant:ident(
         $name:literal, $title:literal, $shape:expr, $measure:expr $(, asked: $asked:ident)? $(, double: $double:ident)?
