@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import re
 from typing import Any
 
 import numpy as np
@@ -142,3 +144,58 @@ def test_what_is_not_offered_is_unsupported() -> None:
     assert found["motion"].shape == (2, 1, 13)
     assert found["contacts"].shape == (0, 8)
     assert read(_scene(_ball())).bodies[0].shapes[0].radius == 0.1
+
+
+@pytest.mark.parametrize("message", ["Error [a.cpp:1] no solution", "WARNING: the solver failed", "\x1b[1;31mError:\x1b[0m NaN"])
+def test_what_an_engine_says_is_its_answer(message: str) -> None:
+    """Numbers of steps in which an engine prints a failure are refused, with its words; other messages are none."""
+
+    def simulate(_scene: Scene, _stepping: Stepping) -> Motion:
+        for _ in range(3):
+            os.write(2, f"{message}\n".encode())
+        return Motion([[np.zeros(13)]], [])
+
+    def other(_scene: Scene, _stepping: Stepping) -> Motion:
+        os.write(2, b"WARNING: no contact data will be reported\n")
+        return Motion([[np.zeros(13)]], [])
+
+    scenes = Scenes("x", {"loud": Variant(simulate, {}), "other": Variant(other, {})}, {})
+    plain = re.sub("\x1b.*?m", "", message)
+    with pytest.raises(ValueError, match=rf"^x says while it computes: {re.escape(plain)}$"):
+        scenes.simulate(_asked(_scene(_ball()), "loud", steps=1, every=1), {})
+    assert scenes.simulate(_asked(_scene(_ball()), "other", steps=1, every=1), {})[1]["motion"].shape == (1, 1, 13)
+
+
+def _pile(rng: np.random.Generator) -> dict[str, Any]:
+    """Two boxes on each other that slide, of masses over six decades."""
+
+    def box(name: str, z: float) -> dict[str, Any]:
+        mass = 10 ** rng.uniform(-3, 3)
+        shapes = [{"kind": "box", "half": [0.1] * 3, "at": [0.0] * 3}]
+        return _ball(name=name, mass=mass, inertia=[mass * 0.01] * 3, position=[0.0, 0.0, z], linear=[0.3, 0, 0], shapes=shapes)
+
+    return _scene(box("lower", 0.1), box("upper", 0.3))
+
+
+def test_a_solver_that_failed_gives_no_motion(oracles: Oracles) -> None:
+    """DART's PGS sets impulses to zero where it fails, and bodies sink: no answer has such a motion, and the reason has its words."""
+    rng, failures = np.random.default_rng(5), 0
+    for _ in range(10):
+        answer, found = oracles["dart"].ask(_asked(_pile(rng), "pgs", steps=100, every=100))
+        if answer["status"] == "ok":
+            assert found["motion"][-1, 0, 2] > 0.05, "it sinks, and DART has said nothing"
+            continue
+        failures += 1
+        assert answer["status"] == "error", answer
+        assert "Primary LCP solver failed" in answer["reason"]
+    assert failures > 3
+
+
+def test_mujoco_counts_its_warnings(oracles: Oracles) -> None:
+    """MuJoCo starts again where an acceleration is too large: its counter is the reason."""
+    rng = np.random.default_rng(6)
+    for _ in range(5):
+        thrown = _ball(position=[0, 0, 5.0], force=[0, 0, 10 ** rng.uniform(12, 15)])
+        answer, _ = oracles["mujoco"].ask(_asked(_scene(thrown), "elliptic_newton", steps=100, every=100))
+        assert answer["status"] == "error", answer
+        assert re.search(r"BADQ(ACC|VEL|POS)", answer["reason"])

@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from featherbench_oracles.abilities.heard import heard
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.messages import Answer, Blocks, Header, check_blocks
 from featherbench_oracles.core.protocol import Unsupported
@@ -269,10 +270,11 @@ class Loops:
         if not (count > 0 and repeats > 0):
             raise ValueError("count and repeats must be positive")
         found, nanoseconds = np.empty((count, description.nv)), 0
-        for _ in range(repeats):
-            for k in range(count):
-                found[k], spent = robot.accelerate(header["method"], blocks["q"][k], blocks["v"][k], blocks["tau"][k])
-                nanoseconds += spent
+        with heard(self.engine):
+            for _ in range(repeats):
+                for k in range(count):
+                    found[k], spent = robot.accelerate(header["method"], blocks["q"][k], blocks["v"][k], blocks["tau"][k])
+                    nanoseconds += spent
         return {"nanoseconds": nanoseconds, "settings": robot.settings(header["method"])}, {"acceleration": found}
 
     def motion(self, header: Header, blocks: Blocks) -> Answer:
@@ -286,7 +288,8 @@ class Loops:
             raise ValueError("steps must be a positive multiple of every")
         if motion.steps // motion.every * (description.nq + description.nv) > MOST_NUMBERS:
             raise ValueError(f"the motion would record more than {MOST_NUMBERS} numbers: record fewer of its steps")
-        q, v, nanoseconds = robot.move(header["method"], blocks["q"], blocks["v"], motion)
+        with heard(self.engine):
+            q, v, nanoseconds = robot.move(header["method"], blocks["q"], blocks["v"], motion)
         return {"nanoseconds": nanoseconds, "settings": robot.settings(header["method"])}, {"q": q, "v": v}
 
     def _asked(self, method: str, kind: str) -> tuple[Description, Mechanics]:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from featherbench_oracles.abilities.heard import heard
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.messages import Answer, Blocks, Header
 from featherbench_oracles.core.protocol import Unsupported
@@ -262,13 +263,15 @@ class Scenes:
             raise ValueError("stiffness must be positive and finite")
         if len(scene.bodies) != 1:
             raise Unsupported("a derivative is of a scene of one body")
-        found = variant.differentiate(scene, stiffness, stepping)
+        with heard(self.engine):
+            found = variant.differentiate(scene, stiffness, stepping)
         return {}, {"state": np.array(found.state), "derivative": np.array(found.matrix)}
 
     def simulate(self, header: Header, _blocks: Blocks) -> Answer:
         """Simulate a scene: blocks `motion` of shape (samples, bodies, 13) and `contacts` of shape (contacts, 8)."""
         variant, scene, stepping = self._asked(header, self.variants)
-        motion = variant.simulate(scene, stepping)
+        with heard(self.engine):
+            motion = variant.simulate(scene, stepping)
         samples = np.array(motion.samples, dtype=float).reshape(stepping.steps // stepping.every, len(scene.bodies), 13)
         contacts = np.array(motion.contacts, dtype=float).reshape(len(motion.contacts), 8)
         return {}, {"motion": samples, "contacts": contacts}

@@ -117,6 +117,14 @@ def _choose(name: str, solver: dartpy.constraint.BoxedLcpConstraintSolver) -> No
         solver.setBoxedLcpSolver(nsgs)
 
 
+def _check(solver: dartpy.constraint.BoxedLcpConstraintSolver) -> None:
+    """Refuse numbers of steps in which a solver says that it failed. Dantzig's and PGS print it; the others count it."""
+    chosen = solver.getBoxedLcpSolver()
+    stats = chosen.getStats() if hasattr(chosen, "getStats") else None
+    if stats is not None and stats.numFailed:
+        raise ValueError(f"dart says that its solver failed in {stats.numFailed} of {stats.numSolves} solutions")
+
+
 def _simulate(name: str, scene: Scene, stepping: Stepping) -> Motion:
     world = dartpy.simulation.World()
     world.setGravity(scene.gravity)
@@ -139,6 +147,7 @@ def _simulate(name: str, scene: Scene, stepping: Stepping) -> Motion:
         world.step()
         if (step + 1) % stepping.every == 0:
             samples.append(_sample(nodes))
+    _check(world.getConstraintSolver())
     return Motion(samples, _contacts(world))
 
 

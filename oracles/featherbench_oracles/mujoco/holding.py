@@ -21,6 +21,7 @@ from featherbench_oracles.core.protocol import Unsupported
 from featherbench_oracles.core.robot import Description
 from featherbench_oracles.mujoco.building import build
 from featherbench_oracles.mujoco.coordinates import change_of_velocities, from_wxyz, to_engine_q, wxyz
+from featherbench_oracles.mujoco.status import check_warnings
 
 # MuJoCo's default impedance, and its largest.
 SOFT, STIFF = (0.9, 0.95, 0.001, 0.5, 2.0), (0.9999, 0.9999, 0.001, 0.5, 2.0)
@@ -148,6 +149,7 @@ class MujocoLoops:
         start = perf_counter_ns()
         mj.mj_forward(self.model, self.data)
         spent = perf_counter_ns() - start
+        check_warnings(self.data)
         return change.to_neutral_a(self.data.qacc.copy()), spent
 
     def move(self, method: str, q: Array, v: Array, motion: Motion) -> tuple[Array, Array, int]:
@@ -163,6 +165,7 @@ class MujocoLoops:
             spent += perf_counter_ns() - start
             qs.append(self._neutral(self.data.qpos))
             vs.append(change_of_velocities(self.robot, qs[-1], np.zeros(self.robot.nv)).to_neutral_tau(self.data.qvel.copy()))
+        check_warnings(self.data)
         return np.array(qs), np.array(vs), spent
 
     def _neutral(self, positions: Array) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 from featherbench_oracles.abilities.scenes import Body, Derivative, DerivativeVariant, Motion, Scene, Stepping, Variant
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.protocol import Unsupported
+from featherbench_oracles.mujoco.status import check_warnings
 
 CONES = {"pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL, "elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC}
 SOLVERS = {"pgs": mujoco.mjtSolver.mjSOL_PGS, "cg": mujoco.mjtSolver.mjSOL_CG, "newton": mujoco.mjtSolver.mjSOL_NEWTON}
@@ -90,6 +91,7 @@ def _simulate(cone: str, solver: str, impratio: float, scene: Scene, stepping: S
         mujoco.mj_step(model, data)
         if (step + 1) % stepping.every == 0:
             samples.append(sample(data, len(scene.bodies)))
+    check_warnings(data)
     return Motion(samples, _contacts(model, data, known))
 
 
@@ -130,6 +132,7 @@ def _transitions(impedance: float, scene: Scene, stiffness: float, stepping: Ste
         mujoco.mjd_transitionFD(model, data, 1e-6, True, step, None, None, None)
         chain = step @ chain
         mujoco.mj_step(model, data)
+    check_warnings(data)
     # The third position and the third velocity: the height.
     rows = [2, 8]
     return Derivative(np.array([data.qpos[2], data.qvel[2]]), chain[np.ix_(rows, rows)])

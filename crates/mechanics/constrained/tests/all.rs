@@ -2,10 +2,13 @@
 
 mod common;
 mod delassus;
+mod drawn;
 mod errors;
 mod files;
 mod graph;
 mod laws;
+#[path = "../../robots/tests/share.rs"]
+mod share;
 mod solve;
 mod squeezer;
 mod stabilise;

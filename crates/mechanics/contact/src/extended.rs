@@ -1,44 +1,45 @@
-//! Small dense linear algebra in double-double arithmetic: what the exact decisions of the enumeration rest on.
+//! Small dense linear algebra with balls: what the decisions of the enumeration and the proofs rest on.
 
-use featherbench_spatial::{DoubleDouble, Real};
+use crate::ball::Ball;
 use nalgebra::{DMatrix, DVector};
 
-/// A dense matrix of double-doubles.
-pub(crate) type Matrix = DMatrix<DoubleDouble>;
+/// A dense matrix of balls.
+pub(crate) type Matrix = DMatrix<Ball>;
 
 /// A matrix of doubles, exactly.
 pub(crate) fn wide(matrix: &DMatrix<f64>) -> Matrix {
-    matrix.map(DoubleDouble::from_f64)
+    matrix.map(Ball::exact)
 }
 
 /// A x + y.
-pub(crate) fn times_plus(a: &Matrix, x: &[DoubleDouble], y: &[DoubleDouble]) -> Vec<DoubleDouble> {
-    a.row_iter().zip(y).map(|(row, y)| row.iter().zip(x).fold(*y, |sum, (a, x)| a.mul_add(*x, sum))).collect()
+pub(crate) fn times_plus(a: &Matrix, x: &[Ball], y: &[Ball]) -> Vec<Ball> {
+    a.row_iter().zip(y).map(|(row, y)| row.iter().zip(x).fold(*y, |sum, (a, x)| sum + *a * *x)).collect()
 }
 
 /// What the equations A x = y say.
 pub(crate) enum Solved {
     /// One x.
-    Unique(Vec<DoubleDouble>),
+    Unique(Vec<Ball>),
     /// None.
     Inconsistent,
     /// Many. Where only one direction is free, it is given: A d = 0.
-    Many(Option<Vec<DoubleDouble>>),
+    Many(Option<Vec<Ball>>),
 }
 
-/// Solves A x = y by elimination with complete pivoting. A pivot at most `zero` is none, and neither is a residual.
+/// Solves A x = y by elimination with complete pivoting. Also tells whether what it says is certain: not where a pivot was taken as zero that
+/// may be another number within its error.
 ///
 /// A may have any shape. Cost: O(rows · columns²).
-pub(crate) fn solve(mut a: Matrix, mut y: Vec<DoubleDouble>, zero: f64) -> Solved {
+pub(crate) fn solve(mut a: Matrix, mut y: Vec<Ball>) -> (Solved, bool) {
     let (rows, columns) = a.shape();
     let mut order: Vec<usize> = (0..columns).collect();
     let mut rank = 0;
     while rank < rows && rank < columns {
-        let mut largest = (zero, None);
+        let mut largest = (0.0, None);
         for row in rank..rows {
             for &column in &order[rank..] {
                 let size = a[(row, column)].to_f64().abs();
-                if size > largest.0 {
+                if size > largest.0 && a[(row, column)].is_nonzero() {
                     largest = (size, Some((row, column)));
                 }
             }
@@ -51,70 +52,69 @@ pub(crate) fn solve(mut a: Matrix, mut y: Vec<DoubleDouble>, zero: f64) -> Solve
         }
         let pivot = a[(rank, column)];
         for other in 0..rows {
-            let factor = a[(other, column)];
-            if other == rank || factor == DoubleDouble::zero() {
+            if other == rank || a[(other, column)].is_zero() {
                 continue;
             }
-            let factor = -(factor / pivot);
+            let factor = a[(other, column)] / pivot;
             for &k in &order[rank + 1..] {
-                a[(other, k)] = a[(rank, k)].mul_add(factor, a[(other, k)]);
+                a[(other, k)] = a[(other, k)] - a[(rank, k)] * factor;
             }
-            a[(other, column)] = DoubleDouble::zero();
-            y[other] = y[rank].mul_add(factor, y[other]);
+            a[(other, column)] = Ball::exact(0.0);
+            y[other] = y[other] - y[rank] * factor;
         }
         rank += 1;
     }
-    // NaN is not within any bound.
-    if !y[rank..].iter().all(|rest| rest.to_f64().abs() <= zero) {
-        return Solved::Inconsistent;
+    let certain = (rank..rows).all(|row| order[rank..].iter().all(|&column| a[(row, column)].is_zero()));
+    if y[rank..].iter().any(|rest| rest.is_nonzero() || rest.to_f64().is_nan()) {
+        return (Solved::Inconsistent, certain && !y[rank..].iter().any(|rest| rest.to_f64().is_nan()));
     }
     if rank < columns {
-        return Solved::Many((rank + 1 == columns).then(|| {
-            let free = order[rank];
-            let mut direction = vec![DoubleDouble::zero(); columns];
-            direction[free] = DoubleDouble::one();
+        let free = order[rank];
+        let direction = (rank + 1 == columns).then(|| {
+            let mut direction = vec![Ball::exact(0.0); columns];
+            direction[free] = Ball::exact(1.0);
             for (row, &column) in order[..rank].iter().enumerate() {
                 direction[column] = -(a[(row, free)] / a[(row, column)]);
             }
             direction
-        }));
+        });
+        return (Solved::Many(direction), certain);
     }
-    let mut x = vec![DoubleDouble::zero(); columns];
+    let mut x = vec![Ball::exact(0.0); columns];
     for (row, &column) in order.iter().enumerate() {
         x[column] = y[row] / a[(row, column)];
     }
-    Solved::Unique(x)
+    (Solved::Unique(x), true)
 }
 
-/// G = J M⁻¹ Jᵀ and J v_free; `None` where M has no Cholesky factor. `M = L Lᵀ`, `Y = L⁻¹ Jᵀ`, `G = Yᵀ Y`.
-pub(crate) fn delassus(mass: &DMatrix<f64>, jacobian: &DMatrix<f64>, free: &DVector<f64>) -> Option<(Matrix, Vec<DoubleDouble>)> {
+/// G = J M⁻¹ Jᵀ and J v_free; `None` where M has no Cholesky factor. `M = L D Lᵀ`, `Y = L⁻¹ Jᵀ`, `G = Yᵀ D⁻¹ Y`.
+pub(crate) fn delassus(mass: &DMatrix<f64>, jacobian: &DMatrix<f64>, free: &DVector<f64>) -> Option<(Matrix, Vec<Ball>)> {
     let (mut lower, jacobian) = (wide(mass), wide(jacobian));
     let (rows, dofs) = jacobian.shape();
-    let free: Vec<DoubleDouble> = free.iter().map(|v| DoubleDouble::from_f64(*v)).collect();
-    let free = times_plus(&jacobian, &free, &vec![DoubleDouble::zero(); rows]);
+    let free: Vec<Ball> = free.iter().map(|v| Ball::exact(*v)).collect();
+    let free = times_plus(&jacobian, &free, &vec![Ball::exact(0.0); rows]);
     for row in 0..dofs {
         for column in 0..=row {
-            let sum = (0..column).fold(lower[(row, column)], |sum, k| (-lower[(row, k)]).mul_add(lower[(column, k)], sum));
-            let is_positive = sum.to_f64() > 0.0;
-            lower[(row, column)] = match (row == column, is_positive) {
-                (true, true) => sum.sqrt(),
-                (true, false) => return None,
-                (false, _) => sum / lower[(column, column)],
-            };
+            let product = |k: usize| lower[(row, k)] * lower[(k, k)] * lower[(column, k)];
+            let sum = (0..column).fold(lower[(row, column)], |sum, k| sum - product(k));
+            lower[(row, column)] = if row == column { sum } else { sum / lower[(column, column)] };
+        }
+        let is_positive = lower[(row, row)].to_f64() > 0.0;
+        if !is_positive {
+            return None;
         }
     }
     let mut half = jacobian.transpose();
     for mut y in half.column_iter_mut() {
         for dof in 0..dofs {
-            let sum = (0..dof).fold(y[dof], |sum, k| (-y[k]).mul_add(lower[(dof, k)], sum));
-            y[dof] = sum / lower[(dof, dof)];
+            y[dof] = (0..dof).fold(y[dof], |sum, k| sum - y[k] * lower[(dof, k)]);
         }
     }
-    let mut delassus = Matrix::from_element(rows, rows, DoubleDouble::zero());
+    let mut delassus = Matrix::from_element(rows, rows, Ball::exact(0.0));
     for a in 0..rows {
         for b in 0..=a {
-            let (x, y) = (half.column(a), half.column(b));
-            let product = -x.iter().zip(y.iter()).fold(DoubleDouble::zero(), |sum, (x, y)| (-*x).mul_add(*y, sum));
+            let product = |k: usize| half[(k, a)] * half[(k, b)] / lower[(k, k)];
+            let product = (0..dofs).fold(Ball::exact(0.0), |sum, k| sum + product(k));
             (delassus[(a, b)], delassus[(b, a)]) = (product, product);
         }
     }

@@ -3,7 +3,7 @@
 //! - [`Problem`] is a contact problem: a Delassus matrix or a mechanism, the free velocity, and a law per contact. [`mod@file`] reads and
 //!   writes it as JSON.
 //! - [`Solver`] is one trait for all solvers. Each [`Solution`] says what is known: converged, a cap was reached, no solution exists (with a
-//!   proof), several exist (with them).
+//!   proof), several exist (with them), or undecided.
 //! - [`Residuals`] measure how far any impulses are from the governing equations.
 //! - [`impact`] has the impact laws of Newton, Poisson, Stronge and Moreau, and sequences of simultaneous impacts.
 //! - [`Grounded`] is a robot over level ground: its contact problem at a state, and one step in time.
@@ -24,8 +24,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod ball;
 mod cones;
 mod extended;
+mod farkas;
 pub mod file;
 mod grounded;
 pub mod impact;

@@ -138,6 +138,6 @@ pub(crate) fn semidefinite(matrix: &DMatrix<f64>, field: &str) -> Result<(), Mal
 }
 
 /// What rounding does to J M⁻¹ Jᵀ and to its eigenvalues: 16 n ε of the largest entry. The products have n terms, and M⁻¹ has its own error.
-fn rounding(matrix: &DMatrix<f64>) -> f64 {
+pub(crate) fn rounding(matrix: &DMatrix<f64>) -> f64 {
     16.0 * matrix.nrows() as f64 * f64::EPSILON * matrix.amax()
 }

@@ -1,8 +1,8 @@
 //! What a contact problem is: the Delassus matrix, the free velocity, and a contact law per contact.
 
+use crate::ball::Ball;
 use crate::extended;
 use crate::malformed::{self, Defect, Malformed};
-use featherbench_spatial::DoubleDouble;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -181,8 +181,8 @@ pub struct Mechanism {
 }
 
 impl Mechanism {
-    /// G = J M⁻¹ Jᵀ and J v_free in double-double arithmetic; `None` where M has no Cholesky factor.
-    pub(crate) fn delassus(&self) -> Option<(extended::Matrix, Vec<DoubleDouble>)> {
+    /// G = J M⁻¹ Jᵀ and J v_free in double-double arithmetic, with bounds of their errors; `None` where M has no Cholesky factor.
+    pub(crate) fn delassus(&self) -> Option<(extended::Matrix, Vec<Ball>)> {
         extended::delassus(&self.mass, &self.jacobian, &self.free)
     }
 }
@@ -256,7 +256,7 @@ impl Problem {
             return Err(Malformed::new("mechanism.mass", Defect::NotPositiveDefinite));
         }
         let (delassus, free) = mechanism.delassus().ok_or_else(|| Malformed::new("mechanism.mass", Defect::NotPositiveDefinite))?;
-        let (delassus, free) = (delassus.map(DoubleDouble::to_f64), DVector::from_iterator(rows, free.iter().map(|x| x.to_f64())));
+        let (delassus, free) = (delassus.map(Ball::to_f64), DVector::from_iterator(rows, free.iter().map(|x| x.to_f64())));
         malformed::matrix(&delassus, "mechanism.jacobian", (rows, rows))?;
         let before = free.clone();
         Ok(Self { name: name.into(), level, contacts, offsets, delassus, free, before, mechanism: Some(mechanism) })

@@ -29,16 +29,17 @@ impl Point {
 /// Why there is no solution.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Certificate {
-    /// A direction y ≥ 0 of the complementarity problem w = M z + q with Mᵀy ≤ 0 and qᵀy < 0. So no z ≥ 0 gives w ≥ 0.
+    /// A combination y ≥ 0 of normal velocities that no impulses within the cones make larger, and that is negative without impulses. So
+    /// some contact closes, whatever the impulses are: [`crate::Lemke`] has the proof. Its signs are certain, with every rounding bounded.
     Ray {
-        /// y, of length 1 in the largest entry.
+        /// y, one number per contact.
         direction: Vec<f64>,
-        /// The largest entry of Mᵀy: zero or less, up to rounding.
+        /// The most that impulses within the cones, of size 1 or less at each contact, add to the combination: zero or less.
         growth: f64,
-        /// qᵀy < 0.
+        /// The combination without impulses: less than zero.
         descent: f64,
     },
-    /// Every contact mode was tried in double-double arithmetic, and each breaks a law.
+    /// Every contact mode was tried in double-double arithmetic, and each breaks a law by more than the bound of its error.
     Enumeration {
         /// How many modes.
         modes: usize,
@@ -51,7 +52,7 @@ pub enum Certificate {
 /// What is known when a solver ends.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// The equations of the solver's model hold to its tolerance. For enumeration: there is no other solution.
+    /// The equations of the solver's model hold to its tolerance. For enumeration: no other mode gave a solution.
     Converged(Point),
     /// The cap on iterations was reached, and the equations do not hold. The last iterate is no answer.
     CapReached {
@@ -68,11 +69,8 @@ pub enum Outcome {
     NoSolution(Certificate),
     /// Several solutions exist: all isolated ones, and the corners of each connected family.
     Several(Vec<Point>),
-    /// Lemke's method ended with a ray that proves nothing.
-    Ray {
-        /// The direction of the ray in the variables of the complementarity problem.
-        direction: Vec<f64>,
-    },
+    /// No solution was found, and no proof that there is none: by Lemke's ray, or where a mode's law is broken by less than its error.
+    Undecided,
 }
 
 impl Outcome {
@@ -115,7 +113,7 @@ impl Solution {
         }
     }
 
-    /// The outcome as one word of a row: `converged`, `cap_reached`, `stalled`, `no_solution`, `several` or `ray`.
+    /// The outcome as one word of a row: `converged`, `cap_reached`, `stalled`, `no_solution`, `several` or `undecided`.
     pub fn status(&self) -> &'static str {
         match self.outcome {
             Outcome::Converged(_) => "converged",
@@ -123,7 +121,7 @@ impl Solution {
             Outcome::Stalled { .. } => "stalled",
             Outcome::NoSolution(_) => "no_solution",
             Outcome::Several(_) => "several",
-            Outcome::Ray { .. } => "ray",
+            Outcome::Undecided => "undecided",
         }
     }
 }

@@ -7,5 +7,8 @@ mod grounded;
 mod impacts;
 mod known;
 mod painleve;
+mod proofs;
 mod reader;
 mod relaxation;
+#[path = "../../robots/tests/share.rs"]
+mod share;

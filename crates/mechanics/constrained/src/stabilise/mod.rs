@@ -9,5 +9,5 @@
 mod projection;
 mod run;
 
-pub use projection::{Projected, Projection};
+pub use projection::{HALVINGS, Projected, Projection};
 pub use run::{Drift, Forces, Run, Simulation, Stabilisation};

@@ -43,6 +43,9 @@ impl Default for Projection {
     }
 }
 
+/// How often [`Projection::beside`] halves a step: to 10⁻⁶ of it, where Newton's method converges.
+pub const HALVINGS: u32 = 20;
+
 /// What a projection did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projected {
@@ -120,6 +123,25 @@ impl Projection {
             }
             at = integrated(&model.topology, &at, &step)?;
             iterations += 1;
+        }
+    }
+
+    /// A configuration on the constraints near `start ⊕ step`, where `start` is on them; and how often the step was halved.
+    ///
+    /// Far from the constraints Newton's method may wander without end. Then the step is halved, again until it ends: at `start` it does.
+    ///
+    /// # Errors
+    /// As [`Projection::configuration`], whose error is that after [`HALVINGS`]: `start` is then not on the constraints.
+    pub fn beside(&self, model: &Model<f64>, constraints: &Constraints, start: &[f64], step: &[f64]) -> Result<(Vec<f64>, u32), Error> {
+        let mut halved = 0;
+        loop {
+            let shorter: Vec<f64> = step.iter().map(|x| x * 0.5_f64.powi(halved as i32)).collect();
+            let mut q = integrated(&model.topology, start, &shorter)?;
+            match self.configuration(model, constraints, &mut q) {
+                Err(Error::NotConverged { .. }) if halved < HALVINGS => halved += 1,
+                Err(error) => return Err(error),
+                Ok(_) => return Ok((q, halved)),
+            }
         }
     }
 

@@ -11,6 +11,9 @@ use crate::problem::{Friction, Problem};
 use nalgebra::{DMatrix, DVector};
 
 /// The complementarity problem of a contact problem, in the scales of [`Problem::scales`].
+///
+/// Each contact has a scale of its own beside them, a power of two: its variables and rows are multiplied by it, σ divided, so that the
+/// entry of its normal is near 1 whatever the masses are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lcp {
     /// M.
@@ -31,17 +34,19 @@ impl Lcp {
         let mut couplings = Vec::new();
         for (index, contact) in problem.contacts().iter().enumerate() {
             let row = problem.range(index).start;
-            let normal = unit(rows, &[(row, 1.0)]);
+            let inverse_mass = problem.delassus()[(row, row)] * scales.impulse / scales.velocity;
+            let own = if inverse_mass > 0.0 { (-0.5 * inverse_mass.log2()).round().exp2() } else { 1.0 };
+            let normal = unit(rows, &[(row, own)]);
             let vertices = vertices(&contact.friction, directions);
             let mut force = normal.clone();
             if let Friction::Sliding { coefficient, direction } = &contact.friction {
-                direction.iter().enumerate().for_each(|(k, d)| force[row + 1 + k] = -coefficient * d);
+                direction.iter().enumerate().for_each(|(k, d)| force[row + 1 + k] = -coefficient * d * own);
             }
             let first = forces.len();
             forces.push(force);
             motions.push(normal);
             for vertex in &vertices {
-                let along: Vec<(usize, f64)> = vertex.iter().enumerate().map(|(k, v)| (row + 1 + k, *v)).collect();
+                let along: Vec<(usize, f64)> = vertex.iter().enumerate().map(|(k, v)| (row + 1 + k, *v * own)).collect();
                 forces.push(unit(rows, &along));
                 motions.push(unit(rows, &along));
             }

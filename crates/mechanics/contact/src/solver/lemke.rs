@@ -1,12 +1,13 @@
 //! Lemke's complementary pivoting, with a lexicographic rule against cycles.
 //!
 //! Source: R. W. Cottle, J.-S. Pang and R. E. Stone, *The Linear Complementarity Problem* (1992), sections 4.4 and 4.9. The method ends with
-//! a solution or with a ray. A ray is a proof only if its direction is a Farkas vector; that is checked, never assumed.
+//! a solution or with a ray. A ray proves nothing by itself: its direction is the candidate of a proof, which `crate::farkas` checks.
 
 use super::lcp::Lcp;
 use super::{Solver, Unsupported};
+use crate::farkas;
 use crate::problem::Problem;
-use crate::solution::{Certificate, Outcome, Point, Solution};
+use crate::solution::{Outcome, Point, Solution};
 use featherbench_spatial::{DoubleDouble, Real};
 use nalgebra::{DMatrix, DVector};
 
@@ -41,9 +42,7 @@ impl Solver for Lemke {
             End::Solved(z) => Outcome::Converged(Point::new(problem, lcp.impulses(&z))),
             End::Cap(z) => Outcome::CapReached { last: Point::new(problem, lcp.impulses(&z)) },
             End::Inexact(z) => Outcome::Stalled { last: Point::new(problem, lcp.impulses(&z)) },
-            End::Ray(direction) => {
-                proof(&lcp, &direction).map_or_else(|| Outcome::Ray { direction: direction.iter().copied().collect() }, Outcome::NoSolution)
-            }
+            End::Ray(z) => farkas::proof(problem, &lcp.impulses(&z)).map_or(Outcome::Undecided, Outcome::NoSolution),
         };
         Ok(Solution { outcome, iterations, steps: Vec::new() })
     }
@@ -62,16 +61,6 @@ enum End {
 const ZERO: f64 = 1e-9;
 /// How well the complementarity problem must hold in the end.
 const SOLVED: f64 = 1e-11;
-
-/// The direction as a proof that no solution exists, if it is one.
-fn proof(lcp: &Lcp, direction: &DVector<f64>) -> Option<Certificate> {
-    let growth = lcp.matrix.tr_mul(direction).max();
-    let descent = lcp.constant.dot(direction);
-    let nonnegative = direction.iter().all(|y| *y >= 0.0);
-    // The direction has rounding errors of size ZERO at most; a proof must be clear of them.
-    let proven = nonnegative && growth <= 1e-3 * ZERO && descent < -ZERO;
-    proven.then(|| Certificate::Ray { direction: direction.iter().copied().collect(), growth, descent })
-}
 
 /// The tableau of w − M z − 1 z0 = q: columns w (0 … n−1), z (n … 2n−1), z0 (2n), and the right side.
 struct Tableau {

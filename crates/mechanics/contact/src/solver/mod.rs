@@ -2,8 +2,8 @@
 //!
 //! | solver | kind | equations | contacts | knows |
 //! |---|---|---|---|---|
-//! | [`Lemke`] | direct | Coulomb; pyramids for round cones | all | one solution, or a ray that proves there is none |
-//! | [`Enumeration`] | direct, double-double | Coulomb | planar, sliding, frictionless; one spatial | all solutions, or that there is none |
+//! | [`Lemke`] | direct | Coulomb; pyramids for round cones | all | one solution, a proof that there is none, or undecided |
+//! | [`Enumeration`] | direct, double-double | Coulomb | planar, sliding, frictionless; one spatial | all solutions, a proof that there is none, or undecided |
 //! | [`Newton`] | semismooth Newton | Coulomb | all but pyramids | one solution |
 //! | [`GaussSeidel`] | first order | Coulomb | all but pyramids | one solution |
 //! | [`BlockGaussSeidel`] | first order | Coulomb | no pyramids, no sliding direction | one solution |

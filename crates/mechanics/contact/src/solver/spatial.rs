@@ -8,28 +8,31 @@
 //!
 //! so there are at most four directions. They are the eigenvalues of a companion matrix, corrected in double-double arithmetic.
 
-use super::enumeration::{Exact, Search, signorini};
-use crate::extended::{self, Matrix, Solved};
+use super::enumeration::{Exact, Search, Violation, negative, signorini};
+use crate::ball::Ball;
+use crate::extended::{self, Solved};
 use crate::problem::{Friction, Problem};
-use featherbench_spatial::larger;
 use featherbench_spatial::{DoubleDouble, Real};
 use nalgebra::{DMatrix, Matrix4};
 
-/// All solutions of a problem with one spatial contact; or the reason why it is not such a problem.
+/// All solutions of a problem with one spatial contact; or the reason why it is not such a problem. Roots of a quartic prove nothing: where
+/// none is a solution, there may be one.
 pub(super) fn search(problem: &Problem, exact: &Exact) -> Result<Search, &'static str> {
     let [contact] = problem.contacts() else { return Err("it enumerates a round cone only if it is the only contact") };
     let Friction::Coulomb { coefficients } = &contact.friction else { return Err("it has no friction pyramids") };
-    let scale: Vec<DoubleDouble> = std::iter::once(1.0).chain(coefficients.iter().copied()).map(DoubleDouble::from_f64).collect();
-    let matrix = Matrix::from_fn(3, 3, |row, column| scale[row] * exact.matrix[(row, column)] * scale[column]);
-    let free: Vec<DoubleDouble> = exact.free.iter().zip(&scale).map(|(b, s)| *b * *s).collect();
-    let mut search = Search::new();
-    let mut candidates = vec![vec![DoubleDouble::zero(); 3]];
-    match extended::solve(matrix.clone(), free.iter().map(|b| -*b).collect(), exact.zero) {
+    let scale: Vec<Ball> = std::iter::once(1.0).chain(coefficients.iter().copied()).map(Ball::exact).collect();
+    let matrix = extended::Matrix::from_fn(3, 3, |row, column| scale[row] * exact.matrix[(row, column)] * scale[column]);
+    let free: Vec<Ball> = exact.free.iter().zip(&scale).map(|(b, s)| *b * *s).collect();
+    let mut search = Search { certain: false, ..Search::new() };
+    let mut candidates = vec![vec![Ball::exact(0.0); 3]];
+    match extended::solve(matrix.clone(), free.iter().map(|b| -*b).collect()).0 {
         Solved::Unique(impulses) => candidates.push(impulses),
         Solved::Many(_) => return Err("its Delassus matrix is singular, and a round cone then has infinitely many modes"),
         Solved::Inconsistent => {}
     }
-    for (sine, cosine) in directions(&matrix, &free) {
+    let (middle, middles) = (matrix.map(Ball::middle), free.iter().map(|b| b.middle()).collect::<Vec<_>>());
+    for (sine, cosine) in directions(&middle, &middles) {
+        let (sine, cosine) = (Ball::at(sine), Ball::at(cosine));
         let along = |row: usize| matrix[(row, 1)] * cosine + matrix[(row, 2)] * sine;
         let normal = -free[0] / (matrix[(0, 0)] - along(0));
         if normal.to_f64().is_finite() {
@@ -39,7 +42,8 @@ pub(super) fn search(problem: &Problem, exact: &Exact) -> Result<Search, &'stati
     search.modes = candidates.len();
     for candidate in candidates {
         let velocities = extended::times_plus(&matrix, &candidate, &free);
-        let violation = violation(&candidate, &velocities);
+        // A root is not exact: what it breaks may be its own error.
+        let violation = Violation { certain: false, ..violation(&candidate, &velocities) };
         let impulses = candidate.iter().zip(&scale).map(|(x, s)| *x * *s).collect();
         search.offer(impulses, violation, exact.zero);
     }
@@ -47,15 +51,14 @@ pub(super) fn search(problem: &Problem, exact: &Exact) -> Result<Search, &'stati
 }
 
 /// Signorini's law, the cone, and maximum dissipation in the axes where the cone is circular.
-fn violation(impulses: &[DoubleDouble], velocities: &[DoubleDouble]) -> f64 {
-    let norm = |v: &[DoubleDouble]| (v[1] * v[1] + v[2] * v[2]).sqrt();
-    let outside = larger(0.0, (norm(impulses) - impulses[0]).to_f64());
+fn violation(impulses: &[Ball], velocities: &[Ball]) -> Violation {
+    let norm = |v: &[Ball]| Ball::at((v[1] * v[1] + v[2] * v[2]).middle().sqrt());
     let gap = impulses[1] * velocities[1] + impulses[2] * velocities[2] + impulses[0] * norm(velocities);
-    larger(signorini(impulses[0], velocities[0]), larger(outside, gap.abs().to_f64()))
+    signorini(impulses[0], velocities[0]).or(negative(impulses[0] - norm(impulses))).or(Violation::of(gap))
 }
 
 /// The coefficients a0, a1, b1, a2, b2 of f.
-fn coefficients(matrix: &Matrix, free: &[DoubleDouble]) -> [DoubleDouble; 5] {
+fn coefficients(matrix: &DMatrix<DoubleDouble>, free: &[DoubleDouble]) -> [DoubleDouble; 5] {
     let half = DoubleDouble::from_f64(0.5);
     let (g1, g2) = (matrix[(0, 1)], matrix[(0, 2)]);
     let (bn, b1, b2) = (free[0], free[1], free[2]);
@@ -70,7 +73,7 @@ fn coefficients(matrix: &Matrix, free: &[DoubleDouble]) -> [DoubleDouble; 5] {
 }
 
 /// Sine and cosine of every zero of f.
-fn directions(matrix: &Matrix, free: &[DoubleDouble]) -> Vec<(DoubleDouble, DoubleDouble)> {
+fn directions(matrix: &DMatrix<DoubleDouble>, free: &[DoubleDouble]) -> Vec<(DoubleDouble, DoubleDouble)> {
     let exact = coefficients(matrix, free);
     let [a0, a1, b1, a2, b2] = exact.map(DoubleDouble::to_f64);
     let value = |angle: f64| a0 + a1 * angle.cos() + b1 * angle.sin() + a2 * (2.0 * angle).cos() + b2 * (2.0 * angle).sin();

@@ -5,7 +5,7 @@ use featherbench_bench::NoAnswer;
 use featherbench_constrained::stabilise::{Projection, Run, Simulation, Stabilisation};
 use featherbench_constrained::systems::{Biped, Bricard, Ladder, Squeezer};
 use featherbench_constrained::{Constrained, Kkt, Mechanism, Method, Mobility, Proximal, RANK, RangeSpace};
-use featherbench_model::{integrate, neutral};
+use featherbench_model::neutral;
 use featherbench_robots::Random;
 use serde_json::json;
 
@@ -63,7 +63,8 @@ impl Named {
     }
 }
 
-/// Grübler's count, and the true mobility: the least of the drawn configurations, since a singular one has more. How many have more is told.
+/// Grübler's count, and the true mobility: the least of the drawn configurations, since a singular one has more. How many have more is told, and
+/// how many were drawn nearer because their projection did not end.
 fn mobility(named: Named) -> Case {
     let (motion, gruebler, freedom) = named.known();
     Case {
@@ -75,26 +76,27 @@ fn mobility(named: Named) -> Case {
             count("gruebler", gruebler, "theory"),
             count("freedom", freedom, "theory"),
             told("singular", "1"),
+            told("halved", "1"),
             error("loop", "loops"),
         ],
         evaluate: Box::new(move |seed| {
             let (mechanism, start) = named.make()?;
             let (model, constraints) = (&mechanism.model, &mechanism.constraints);
             let mut random = Random::named(seed, named.name());
-            let (mut found, mut open) = (Vec::new(), 0.0);
+            let (mut found, mut open, mut halved) = (Vec::new(), 0.0, 0);
             for _ in 0..DRAWS {
                 let step: Vec<f64> = (0..model.topology.nv()).map(|_| random.uniform(-0.2, 0.2)).collect();
-                let mut q = integrate(&model.topology, &start, &step).map_err(failed)?;
                 // A row that depends on others does so on the loops alone: next to them it has a rest of the size of the residual.
                 let closing = Projection { tolerance: 1e-14, ..Projection::default() };
-                closing.configuration(model, constraints, &mut q).map_err(failed)?;
+                let (q, halvings) = closing.beside(model, constraints, &start, &step).map_err(failed)?;
+                halved += usize::from(halvings > 0);
                 let mobility = Mobility::at(model, constraints, &q).map_err(failed)?;
                 found.push(mobility.freedom());
                 open = largest([open, mobility.residual]);
             }
             let least = found.iter().min().copied().unwrap_or_default();
             let singular = found.iter().filter(|freedom| **freedom > least).count();
-            Ok(vec![mechanism.graph.gruebler(motion) as f64, least as f64, singular as f64, open])
+            Ok(vec![mechanism.graph.gruebler(motion) as f64, least as f64, singular as f64, halved as f64, open])
         }),
     }
 }

@@ -62,6 +62,7 @@ pub(crate) const WORDS: Words = Words {
         ("gruebler", "mobility by Grübler's count"),
         ("freedom", "mobility by the rank of the constraints"),
         ("singular", "whether the configuration is singular"),
+        ("halved", "draws that were taken nearer to the start, because their projection onto the loops did not end"),
         ("loop", "how far a loop is open, or its velocity or acceleration"),
         ("order", "fitted order of convergence in the step"),
         ("energy_drift", "the largest change of the energy"),
