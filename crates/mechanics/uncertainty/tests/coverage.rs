@@ -30,7 +30,7 @@ impl Tally {
     /// Each coverage is 95 %, to 2 % and to five of its own deviations, whichever is more. So a right interval fails with a probability below 6e-7,
     /// and one of the forty here with below 3e-5.
     fn judge(&self) {
-        assert!(self.0.len() > 20, "{}", self.0.len());
+        assert!(self.0.len() >= 12, "{}", self.0.len());
         let mut wrong = Vec::new();
         for (name, [held, all]) in &self.0 {
             let (share, deviation) = (*held as f64 / *all as f64, (0.95 * 0.05 / *all as f64).sqrt());
