@@ -125,6 +125,20 @@ fn a_filter_without_a_match_is_told_what_there_is() {
     run("panda/featherbench/fd/aba$").expect(0, &["report:"]);
 }
 
+/// Another seed needs engines that answer only where answers are recorded.
+#[test]
+fn a_seed_needs_live_engines_only_where_answers_are_recorded() {
+    let sandbox = Sandbox::new();
+    sandbox.run(&["run", "--suite", "smoke", "--seed", "3", "--out", "out"]).expect(2, &["recorded to the suite's own seed", "--live"]);
+    assert!(!sandbox.path("out").exists(), "nothing was begun");
+    for suite in ["uncertainty", "identification", "contact", "lesson"] {
+        let cell = if suite == "uncertainty" { "refusal" } else { "nothing" };
+        let expected = if suite == "uncertainty" { (0, "report:") } else { (2, "no cell of the suite") };
+        let found = sandbox.run(&["run", "--suite", suite, "--seed", "3", "--out", suite, "--filter", cell]);
+        found.expect(expected.0, &[expected.1]);
+    }
+}
+
 #[test]
 fn wrong_usage_is_exit_code_two() {
     let sandbox = Sandbox::new();

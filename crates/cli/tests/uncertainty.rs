@@ -26,6 +26,7 @@ fn methods_agree() {
             let number = |of: &Value, name: &str| of["dofs"][dof][name].as_f64().unwrap();
             let apart = (number(&found, "mean") - number(&exact, "mean")).abs();
             assert!(apart < 4.0 * number(&found, "mean_error"), "{method} {dof} {apart}");
+            assert!(number(&found, "mean_half_width") > 1.9 * number(&found, "mean_error"));
             let apart = (number(&found, "deviation") - number(&exact, "deviation")).abs();
             assert!(apart < 4.0 * number(&found, "deviation_error"), "{method} {dof} {apart}");
         }
@@ -54,7 +55,8 @@ fn bad_input_is_named() {
         (&["panda", "--spread", "1.5"], "raise its lower bound"),
         (&["panda", "--threads", "0"], "threads is 0"),
         (&["panda", "--samples", "3"], "samples is 3"),
-        (&["panda", "--method", "chaos", "--order", "30"], "take a lower order, or sample"),
+        (&["panda", "--method", "chaos", "--order", "30"], "make 31^9 nodes, and 262144 are allowed; take order 3 or a lower one"),
+        (&["chain:n=1", "--method", "chaos", "--order", "40"], "order 40 is above 38"),
         (&["panda", "--state", "nowhere.json"], "nowhere.json"),
     ];
     for (arguments, part) in cases {

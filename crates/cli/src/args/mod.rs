@@ -135,8 +135,8 @@ pub struct AskedArgs {
     /// Ask the engines themselves instead of their recorded answers.
     #[arg(long)]
     pub live: bool,
-    /// The seed of the states, instead of the suite's; recorded answers are to the suite's own.
-    #[arg(long, requires = "live")]
+    /// The seed of all that is drawn, instead of the suite's. Answers are recorded to the suite's own: a suite that has some needs --live.
+    #[arg(long)]
     pub seed: Option<u64>,
     /// The number of robots that the suite draws, instead of its own (for suites with a table `[draw]`).
     #[arg(long, value_name = "N")]

@@ -8,7 +8,7 @@ use crate::robots::Loaded;
 use crate::root::Root;
 use ::featherbench_results::{EngineInfo, EngineSource};
 use featherbench_bench::{DescribedEngine, Engine, OWN, Robot, Start, Study};
-use featherbench_engines::{Featherbench, Limits, Recorded, read_recordings};
+use featherbench_engines::{Featherbench, Limits, Recorded, read_recordings, recording_name};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -31,6 +31,8 @@ pub struct Asked<'a> {
     pub externals: &'a [External],
     /// Whether the engines themselves are asked.
     pub live: bool,
+    /// The seed that is asked for, if any: answers are recorded to the suite's own.
+    pub seed: Option<u64>,
     /// The folder of recorded answers.
     pub recorded: PathBuf,
     /// The robots that recorded answers are about.
@@ -52,6 +54,7 @@ impl<'a> Asked<'a> {
             alone: of_studies(false),
             externals: &args.asked.externals,
             live: args.asked.live,
+            seed: args.asked.seed,
             recorded: args.asked.recorded.clone().unwrap_or_else(|| root.recorded()),
             robots: loaded.robots.iter().filter(answers).collect(),
             limits: limits(args),
@@ -66,6 +69,7 @@ impl<'a> Asked<'a> {
             alone: Vec::new(),
             externals: &[],
             live: true,
+            seed: None,
             recorded: root.recorded(),
             robots: Vec::new(),
             limits,
@@ -98,6 +102,16 @@ pub fn open(root: &Root, asked: &Asked) -> Result<Opened, Fail> {
         opened.add(started(root, engine, limits), &engine.name, EngineSource::Live);
     }
     let (live, recorded): (Vec<&DescribedEngine>, Vec<_>) = due.into_iter().partition(|engine| asked.live || !engine.recorded);
+    if let Some(seed) = asked.seed {
+        let answered = |robot: &&Robot| asked.recorded.join(recording_name(&robot.name)).exists();
+        if !recorded.is_empty() && asked.robots.iter().any(answered) {
+            let names: Vec<&str> = recorded.iter().map(|engine| engine.name.as_str()).collect();
+            return Err(Fail::input(format!(
+                "--seed {seed}: the answers of {} are recorded to the suite's own seed; add --live to ask the engines, or leave --seed out",
+                names.join(", ")
+            )));
+        }
+    }
     let (compiled, installed): (Vec<_>, Vec<_>) = live.into_iter().partition(|engine| engine.is_compiled());
     // What cannot be built is told before anything else is started.
     for engine in compiled {

@@ -9,8 +9,8 @@ use featherbench_bench::measure::{ratio, worst};
 use featherbench_model::{Description, Model};
 use featherbench_robots::StateBatch;
 use featherbench_uncertainty::{
-    Indices, Points, Quantity, RobotResponse, Route, Sampling, Space, State, chaos, first_order, largest_order, sample, sensitivity,
-    spread, unscented,
+    Estimate, Indices, Points, QUANTILES, Quantile, Quantity, RobotResponse, Route, Sampling, Space, State, chaos, first_order,
+    largest_order, sample, sensitivity, spread, unscented,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Deserialize;
@@ -19,8 +19,6 @@ use std::time::Instant;
 
 /// Nodes of a tensor rule of polynomial chaos, at most.
 const NODES: usize = 100_000;
-/// The quantiles that are told.
-const QUANTILES: [f64; 5] = [0.01, 0.05, 0.5, 0.95, 0.99];
 
 /// A state as a file has it.
 #[derive(Deserialize)]
@@ -32,13 +30,11 @@ struct StateFile {
     drive: Vec<f64>,
 }
 
-/// What is told of a degree of freedom.
+/// What is told of a degree of freedom. A method without samples has no errors and no quantiles.
 struct Line {
-    mean: f64,
-    mean_error: Option<f64>,
-    deviation: f64,
-    deviation_error: Option<f64>,
-    quantiles: Option<Vec<f64>>,
+    mean: Estimate,
+    deviation: Estimate,
+    quantiles: Option<[Quantile; QUANTILES.len()]>,
     more: Value,
 }
 
@@ -67,11 +63,10 @@ pub fn propagate(root: impl Fn() -> Result<Root, Fail>, args: &UncertaintyArgs) 
         ..Sampling::default()
     };
     let start = Instant::now();
+    let exact = |value| Estimate { value, error: 0.0, freedom: f64::INFINITY };
     let plain = |mean: f64, variance: f64| Line {
-        mean,
-        mean_error: None,
-        deviation: variance.max(0.0).sqrt(),
-        deviation_error: None,
+        mean: exact(mean),
+        deviation: exact(variance.max(0.0).sqrt()),
         quantiles: None,
         more: Value::Null,
     };
@@ -100,16 +95,12 @@ pub fn propagate(root: impl Fn() -> Result<Root, Fail>, args: &UncertaintyArgs) 
             let found = sample(&space, &response, Some(&linear), &settings, &|done| bar.set_position(done)).map_err(bad)?;
             bar.finish_and_clear();
             let of = |output: &featherbench_uncertainty::Output| {
-                let best = output.controlled.filter(|controlled| controlled.error < output.mean.error).unwrap_or(output.mean);
-                let deviation = output.variance.value.sqrt();
                 let density: Vec<[f64; 2]> = output.histogram.density(64).into_iter().map(|(at, density)| [at, density]).collect();
                 Line {
-                    mean: best.value,
-                    mean_error: Some(best.error),
-                    deviation,
-                    // Of a constant the variance is exact: zero over zero is zero.
-                    deviation_error: Some(ratio(output.variance.error, 2.0 * deviation)),
-                    quantiles: QUANTILES.map(|p| output.histogram.quantile(p)).into_iter().collect(),
+                    // To take the one with the smaller error would make the interval too narrow: errors are estimates too.
+                    mean: output.controlled.unwrap_or(output.mean),
+                    deviation: output.deviation,
+                    quantiles: Some(output.quantiles),
                     more: json!({
                         "skewness": output.moments.skewness(), "excess": output.moments.excess(), "reduction": output.reduction,
                         "resolution": output.histogram.width(), "density": density,
@@ -141,15 +132,16 @@ pub fn propagate(root: impl Fn() -> Result<Root, Fail>, args: &UncertaintyArgs) 
         return Ok(());
     }
     let what = if args.torque { "torques" } else { "accelerations" };
-    let widest = lines.iter().map(|line| ratio(line.deviation, line.mean.abs())).fold(0.0, worst);
+    let widest = lines.iter().map(|line| ratio(line.deviation.value, line.mean.value.abs())).fold(0.0, worst);
     say!("{}: {what} deviate by up to {:.3} of their mean, from {} uncertain parameters ({source})", robot.name, widest, names.len());
-    say!("{:>4} {:>14} {:>10} {:>14} {:>10} {:>14} {:>14}", "dof", "mean", "±", "deviation", "±", "5 %", "95 %");
-    let shown = |number: Option<f64>| number.map_or_else(String::new, |x| format!("{x:.1e}"));
+    say!("{:>4} {:>14} {:>8} {:>14} {:>8} {:>14} {:>8} {:>14} {:>8}", "dof", "mean", "±", "deviation", "±", "5 %", "±", "95 %", "±");
     for (dof, line) in lines.iter().enumerate() {
-        let quantile = |k: usize| line.quantiles.as_ref().map_or_else(String::new, |all| format!("{:.6}", all[k]));
-        let (mean, deviation) = (format!("{:.6}", line.mean), format!("{:.6}", line.deviation));
-        let errors = [shown(line.mean_error), shown(line.deviation_error)];
-        say!("{dof:>4} {mean:>14} {:>10} {deviation:>14} {:>10} {:>14} {:>14}", errors[0], errors[1], quantile(1), quantile(3));
+        let quantile = |k: usize| line.quantiles.as_ref().and_then(|all| all[k].found);
+        let numbers = [Some(line.mean), Some(line.deviation), quantile(1), quantile(3)].map(|number| {
+            let error = number.filter(|_| line.quantiles.is_some()).map_or_else(String::new, |x| format!("{:.1e}", x.error));
+            format!(" {:>14} {error:>8}", number.map_or_else(String::new, |x| format!("{:.6}", x.value)))
+        });
+        say!("{dof:>4}{}", numbers.concat());
     }
     for (dof, own) in indices.iter().flatten().enumerate() {
         let total = |i: usize| own.total[i].value;
@@ -159,7 +151,13 @@ pub fn propagate(root: impl Fn() -> Result<Root, Fail>, args: &UncertaintyArgs) 
             order.iter().take(3).map(|i| format!("{} {:.3} (alone {:.3})", names[*i], total(*i), own.first[*i].value)).collect();
         say!("dof {dof}, parts of the variance: {}", first.join(", "));
     }
-    say!("units: {unit}; ± is a standard error");
+    match lines.first().filter(|line| line.quantiles.is_some()) {
+        Some(Line { mean, .. }) => {
+            let student = featherbench_uncertainty::student(mean.freedom);
+            say!("units: {unit}; ± is a standard error, and {student:.2} of it to both sides of the number are a 95 % interval");
+        }
+        None => say!("units: {unit}"),
+    }
     if response.is_lossy() {
         say!("damping and dry friction are part of it, because one of them is uncertain");
     }
@@ -173,17 +171,25 @@ pub fn propagate(root: impl Fn() -> Result<Root, Fail>, args: &UncertaintyArgs) 
 }
 
 fn described(line: &Line) -> Value {
-    let quantiles = line.quantiles.as_ref().map(|all| QUANTILES.iter().zip(all).map(|(p, x)| json!([p, x])).collect::<Vec<Value>>());
+    let error = |number: &Estimate| line.quantiles.map(|_| number.error);
+    let half = |number: &Estimate| line.quantiles.map(|_| number.half_width());
+    let of = |quantile: &Quantile, number: &dyn Fn(Estimate) -> f64| json!([quantile.probability, quantile.found.map(number)]);
+    let list = |number: &dyn Fn(Estimate) -> f64| line.quantiles.map(|all| all.iter().map(|own| of(own, number)).collect::<Vec<Value>>());
     json!({
-        "mean": line.mean, "mean_error": line.mean_error, "deviation": line.deviation, "deviation_error": line.deviation_error,
-        "quantiles": quantiles, "more": line.more,
+        "mean": line.mean.value, "mean_error": error(&line.mean), "mean_half_width": half(&line.mean),
+        "deviation": line.deviation.value, "deviation_error": error(&line.deviation), "deviation_half_width": half(&line.deviation),
+        "quantiles": list(&|own| own.value), "quantile_errors": list(&|own| own.error), "quantile_half_widths": list(&|own| own.half_width()),
+        "more": line.more,
     })
 }
 
 fn of_indices(own: &Indices, names: &[&str]) -> Value {
     let one = |(i, name): (usize, &&str)| {
         let (first, total) = (own.first[i], own.total[i]);
-        json!({"variable": name, "first": first.value, "first_error": first.error, "total": total.value, "total_error": total.error})
+        json!({
+            "variable": name, "first": first.value, "first_error": first.error, "first_half_width": first.half_width(),
+            "total": total.value, "total_error": total.error, "total_half_width": total.half_width(),
+        })
     };
     names.iter().enumerate().map(one).collect()
 }

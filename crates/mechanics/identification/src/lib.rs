@@ -47,7 +47,7 @@ pub use log_cholesky::LogCholesky;
 pub use outcome::{Change, changes, consistency, described};
 pub use pseudo::{Consistency, PseudoInertia, ZERO};
 pub use samples::Samples;
-pub use scenario::{Scatter, Scenario, disturbed, scatter};
+pub use scenario::{Scatter, Scenario, disturbed, held_out_deviation, scatter};
 pub use semidefinite::{MARGIN, Semidefinite};
 pub use smooth::{Smoothing, samples};
 pub use unknowns::{Dof, Kind, Terms, Unknown};

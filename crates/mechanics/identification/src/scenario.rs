@@ -54,6 +54,31 @@ pub fn disturbed(samples: &Samples, deviation: f64, seed: u64) -> Samples {
     samples
 }
 
+/// How far the mean square error of predicted torques of the held-out motion, over that of the noise, is above what theory expects of ordinary least
+/// squares: in normal deviations.
+///
+/// The errors are `e + Y₂(β̂ − β)`: their covariance is `1 + Y₂(Y₁ᵀY₁)⁻¹Y₂ᵀ` in units of the noise, with eigenvalues 1 + λ_i and ones. A sum of their
+/// squares is nearly χ² with the same first three moments (P. Hall, 1983), and the cube root of that is nearly normal (Wilson & Hilferty, 1931).
+///
+/// # Errors
+/// [`IdentificationError`] when the motion to fit does not tell the base parameters.
+pub fn held_out_deviation(scenario: &Scenario, mean_square: f64) -> Result<f64, IdentificationError> {
+    let linear = &scenario.linear;
+    let of = |samples: &Samples| Information::of(linear, samples, &Stacking::plain(linear));
+    let fitted = of(&scenario.fitted)?;
+    let base = Base::of(&fitted)?;
+    let factor = |information: Information| information.only(&base.independent).factor().rows(0, base.rank()).transpose();
+    let (fitted, other) = (factor(fitted), factor(of(&scenario.held_out)?));
+    let ratio = fitted.solve_lower_triangular(&other).ok_or(IdentificationError::Singular("the regressor of the motion to fit"))?;
+    let grown = (&ratio * ratio.transpose()).symmetric_eigenvalues().add_scalar(1.0);
+    let count = scenario.held_out.tau.len() as f64;
+    let [first, second, third] = [1, 2, 3].map(|power| count - grown.len() as f64 + grown.map(|x| x.powi(power)).sum());
+    let freedom = second.powi(3) / third.powi(2);
+    let chi = 1.0 + (count * mean_square - first) / (2.0 * second).sqrt() * (2.0 / freedom).sqrt();
+    let ninth = 2.0 / (9.0 * freedom);
+    Ok((chi.cbrt() - 1.0 + ninth) / ninth.sqrt())
+}
+
 /// How the estimates of many draws of noise spread, against the theory `σ²(Y₁ᵀY₁)⁻¹`.
 ///
 /// Estimates are whitened, `e = R(β̂ − β)/σ` with `RᵀR = Y₁ᵀY₁`: then the theory's covariance is the identity, whatever the units.

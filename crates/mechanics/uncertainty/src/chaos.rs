@@ -12,6 +12,8 @@ use crate::{Error, Response, Space};
 
 /// The most nodes of a rule.
 const LIMIT: usize = 1 << 18;
+/// The highest order: the polynomials of a variable are known up to it.
+const HIGHEST: usize = ORDERS - 2;
 
 /// The series of each output.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,20 +33,23 @@ pub struct Chaos {
 
 /// The largest order whose rule has at most so many nodes.
 pub fn largest_order(variables: usize, nodes: usize) -> usize {
-    (0..ORDERS - 1).rev().find(|p| ((p + 1) as f64).powi(variables as i32) <= nodes as f64).unwrap_or(0)
+    (0..=HIGHEST).rev().find(|p| ((p + 1) as f64).powi(variables as i32) <= nodes as f64).unwrap_or(0)
 }
 
 /// The series up to an order.
 ///
 /// # Errors
-/// [`Error`] when the rule has too many nodes, or the answer at one is not finite.
+/// [`Error`] when the order is too high, the rule has too many nodes, or the answer at one is not finite.
 pub fn chaos<R: Response>(space: &Space, response: &R, order: usize) -> Result<Chaos, Error> {
     let variables = space.len();
-    let count = ((order + 1) as f64).powi(variables as i32);
-    if count > LIMIT as f64 || order + 1 >= ORDERS {
-        return Err(Error::TooManyNodes { order, variables, nodes: count, limit: LIMIT });
+    let highest = largest_order(variables, LIMIT);
+    if order > HIGHEST {
+        return Err(Error::OrderTooHigh { order, limit: HIGHEST, highest });
     }
-    let nodes = count as usize;
+    if order > highest {
+        return Err(Error::TooManyNodes { points: order + 1, variables, limit: LIMIT, highest });
+    }
+    let nodes = (order + 1).pow(variables as u32);
     let polynomials = space.polynomials();
     let rules: Vec<Rule> = polynomials.iter().map(|known| known.rule(order + 1)).collect();
     // The values of all polynomials at the nodes of each direction.

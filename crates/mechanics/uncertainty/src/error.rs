@@ -55,17 +55,32 @@ pub enum Error {
         /// The value.
         value: f64,
     },
-    /// Too many nodes of a tensor rule.
-    #[error("order {order} in {variables} variables takes {nodes:e} nodes, and {limit} are allowed; take a lower order, or sample")]
-    TooManyNodes {
+    /// An order of polynomials that are not known.
+    #[error(
+        "order {order} is above {limit}, up to which the polynomials of a variable are known; take order {highest} or a lower one, or sample"
+    )]
+    OrderTooHigh {
         /// The order.
         order: usize,
+        /// The highest order of a polynomial.
+        limit: usize,
+        /// The highest order that these variables allow.
+        highest: usize,
+    },
+    /// Too many nodes of a tensor rule.
+    #[error(
+        "{points} points for each of {variables} variables make {points}^{variables} nodes, and {limit} are allowed; take order {highest} or a lower \
+         one, or sample"
+    )]
+    TooManyNodes {
+        /// The points in each direction: one more than the order.
+        points: usize,
         /// The variables.
         variables: usize,
-        /// The nodes that it takes.
-        nodes: f64,
-        /// The largest number.
+        /// The largest number of nodes.
         limit: usize,
+        /// The highest order that these variables allow.
+        highest: usize,
     },
     /// More variables than there are dimensions of points.
     #[error("there are {found} dimensions, and Sobol' points have {limit} at most; take random points")]

@@ -23,7 +23,8 @@
 //! | `robot/` | the dynamics of a robot as such a function |
 //! | `sensitivity.rs` | Sobol' indices by sampling |
 //! | `mixture.rs` | answers that differ by contact mode |
-//! | `moments.rs`, `histogram.rs` | what samples are reduced to |
+//! | `moments.rs`, `histogram.rs`, `quantile.rs` | what samples are reduced to |
+//! | `estimate.rs` | a number with its standard error and its interval |
 //!
 //! **Same digits for any number of threads.** A sample is a function of seed and index. Samples are reduced in blocks of fixed size, and blocks
 //! are merged in their order.
@@ -43,11 +44,13 @@
 
 mod chaos;
 mod error;
+mod estimate;
 mod first_order;
 mod histogram;
 mod mixture;
 mod moments;
 mod quadrature;
+mod quantile;
 mod response;
 mod robot;
 mod sampling;
@@ -60,14 +63,16 @@ mod variable;
 
 pub use chaos::{Chaos, chaos, largest_order};
 pub use error::Error;
+pub use estimate::{Estimate, student};
 pub use first_order::{Linear, first_order};
 pub use histogram::{BINS, Histogram};
 pub use mixture::{Mixture, Mode, mixture};
 pub use moments::Moments;
 pub use quadrature::{Recurrence, Rule};
+pub use quantile::{QUANTILES, Quantile};
 pub use response::{Closure, LANES, Lanes, Response, at};
 pub use robot::{Quantity, RobotResponse, Route, State};
-pub use sampling::{Estimate, Output, Points, Sampled, Sampling, draw, sample};
+pub use sampling::{Output, Points, Sampled, Sampling, draw, sample};
 pub use sensitivity::{Indices, sensitivity};
 pub use sobol::Sobol;
 pub use space::Space;

@@ -67,7 +67,7 @@ pub fn mixture(space: &Space, settings: &Sampling, answer: impl Fn(&[f64]) -> Op
     let all = found.values().fold(Moments::default(), |all, own| all.merged(*own));
     let of = |(mode, moments): (u64, Moments)| {
         let value = moments.count / total;
-        Mode { mode, weight: Estimate { value, error: (value * (1.0 - value) / total).sqrt() }, moments }
+        Mode { mode, weight: Estimate { value, error: (value * (1.0 - value) / total).sqrt(), freedom: total - 1.0 }, moments }
     };
     Ok(Mixture { modes: found.into_iter().map(of).collect(), all })
 }

@@ -3,6 +3,8 @@
 //! A block is reduced about its own mean. Two sets are merged by the formulas of P. Pébay, *Sandia report SAND2008-6212*, 2008. Nothing depends on
 //! which thread reduced a block.
 
+use crate::Estimate;
+
 /// Count, mean and central sums Σ(y − ȳ)ᵏ of one output.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Moments {
@@ -82,7 +84,7 @@ impl Moments {
         Self { count: n, mean: self.mean + d * (b / n), sums: [second, third, fourth] }
     }
 
-    /// The unbiased variance.
+    /// The variance, unbiased of independent samples.
     pub fn variance(&self) -> f64 {
         self.sums[0] / (self.count - 1.0)
     }
@@ -96,6 +98,16 @@ impl Moments {
     pub fn variance_error(&self) -> f64 {
         let (n, square) = (self.count, self.variance());
         ((self.sums[2] / n - square * square * (n - 3.0) / (n - 1.0)).max(0.0) / n).sqrt()
+    }
+
+    /// The mean of independent samples.
+    pub fn mean_estimate(&self) -> Estimate {
+        Estimate { value: self.mean, error: self.mean_error(), freedom: self.count - 1.0 }
+    }
+
+    /// The variance of independent samples.
+    pub fn variance_estimate(&self) -> Estimate {
+        Estimate { value: self.variance(), error: self.variance_error(), freedom: self.count - 1.0 }
     }
 
     /// μ₃/σ³.

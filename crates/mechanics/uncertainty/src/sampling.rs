@@ -4,13 +4,17 @@
 //! is a function of (seed, r, k). Blocks of fixed size are reduced by themselves and merged in their order: the digits do not depend on the
 //! number of threads.
 //!
-//! Standard errors: of random points, from the moments of all samples. Of Sobol' points, from the spread of the R replicates.
+//! Standard errors: of random points, from the moments of all samples. Of Sobol' points, from the spread of the R replicates. Sobol' points of one
+//! replicate are not independent, so nothing may be divided by N − 1: with the mean of all replicates ȳ and those of each, ȳ_r,
+//! `V = Σ (y − ȳ)²/N + Σ_r (ȳ_r − ȳ)²/(R (R − 1))` has no bias. Its last term is the squared error of ȳ.
 //!
 //! **Control variate.** ℓ = y(μ) + J (x − μ) has a known mean, y(μ). With β = cov(y, ℓ)/var(ℓ), the mean of y − β (ℓ − y(μ)) is that of y, and
 //! its variance is (1 − ρ²) var(y). β is fitted to the same samples, which biases the mean by O(1/N).
 
+use crate::estimate::of_replicates;
 use crate::moments::product_sum;
-use crate::{Error, Histogram, LANES, Lanes, Linear, Moments, Response, Sobol, Space};
+use crate::quantile::{QUANTILES, Quantile};
+use crate::{Error, Estimate, Histogram, LANES, Lanes, Linear, Moments, Response, Sobol, Space};
 use featherbench_robots::Random;
 use featherbench_spatial::Real;
 use featherbench_spatial::{larger, smaller};
@@ -53,15 +57,6 @@ impl Default for Sampling {
     }
 }
 
-/// A number with its standard error.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// The number.
-    pub value: f64,
-    /// Its standard error.
-    pub error: f64,
-}
-
 /// What is known of an output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
@@ -69,10 +64,14 @@ pub struct Output {
     pub mean: Estimate,
     /// The variance.
     pub variance: Estimate,
+    /// The standard deviation: the root of the variance, less its bias.
+    pub deviation: Estimate,
     /// The mean by the control variate, if there is one.
     pub controlled: Option<Estimate>,
     /// 1/(1 − ρ²): how many times as many samples the plain mean would need.
     pub reduction: Option<f64>,
+    /// The [`QUANTILES`].
+    pub quantiles: [Quantile; QUANTILES.len()],
     /// All moments.
     pub moments: Moments,
     /// The density.
@@ -362,43 +361,60 @@ fn summary(settings: &Sampling, samples: u64, found: &[Reduced], linear: Option<
     };
     let mut all = first.clone();
     others.iter().for_each(|other| all.merge(other));
-    let spread = |of: &dyn Fn(&Reduced) -> f64| {
-        let values: Vec<f64> = found.iter().map(of).collect();
-        Moments::of(&values).mean_error()
+    let spread = |of: &dyn Fn(&Reduced) -> f64| of_replicates(&found.iter().map(of).collect::<Vec<f64>>());
+    // The covariance of the means of all replicates, from those of each. `Σ (y − ȳ)(z − z̄)/N` lacks it: a mean is nearer to its own samples.
+    let of_means = |i: usize, j: usize| {
+        let apart = |own: &Reduced, k: usize| own.outputs[k].mean - all.outputs[k].mean;
+        spread(&|own| apart(own, i) * apart(own, j)).value / (found.len() as f64 - 1.0)
     };
     let random = settings.points == Points::Random;
     let output = |k: usize| {
         let moments = all.outputs[k];
         let known = linear.map_or(0.0, |linear| linear.value[k]);
-        let (mean_error, variance_error) = if random {
-            (moments.mean_error(), moments.variance_error())
+        let mean = if random { moments.mean_estimate() } else { Estimate { value: moments.mean, ..spread(&|own| own.outputs[k].mean) } };
+        let variance = if random {
+            moments.variance_estimate()
         } else {
-            (spread(&|own| own.outputs[k].mean), spread(&|own| own.outputs[k].variance()))
+            // The mean square about the mean of all replicates has the error of the variance, to the first order.
+            let about = |own: &Moments| own.sums[0] / own.count + (own.mean - moments.mean).powi(2);
+            let about = spread(&|own| about(&own.outputs[k]));
+            Estimate { value: about.value + of_means(k, k), ..about }
         };
         let part = all.linear.get(k).map(|(of, with)| (with * with / (of.sums[0] * moments.sums[0])).min(1.0));
-        let controlled = all.controlled(k, known).map(|(value, slope)| {
-            let error = match (random, part) {
-                (true, Some(part)) => moments.mean_error() * (1.0 - part).sqrt(),
-                _ => spread(&|own| own.outputs[k].mean - slope * (own.linear[k].0.mean - known)),
-            };
-            Estimate { value, error }
+        let controlled = all.controlled(k, known).map(|(value, slope)| match (random, part) {
+            (true, Some(part)) => Estimate { value, error: mean.error * (1.0 - part).sqrt(), freedom: mean.freedom - 1.0 },
+            _ => Estimate { value, ..spread(&|own| own.outputs[k].mean - slope * (own.linear[k].0.mean - known)) },
         });
         Output {
-            mean: Estimate { value: moments.mean, error: mean_error },
-            variance: Estimate { value: moments.variance(), error: variance_error },
+            mean,
+            variance,
+            deviation: root(variance),
             controlled,
             reduction: part.map(|part| 1.0 / (1.0 - part)),
+            quantiles: QUANTILES.map(|p| Quantile::of(p, &all.histograms[k], found.iter().map(|own| &own.histograms[k]), random)),
             moments,
             histogram: all.histograms[k].clone(),
         }
     };
     let outputs: Vec<Output> = (0..all.outputs.len()).map(output).collect();
-    let covariance = DMatrix::from_fn(outputs.len(), outputs.len(), |i, j| match i.cmp(&j) {
-        std::cmp::Ordering::Equal => outputs[i].moments.variance(),
-        std::cmp::Ordering::Greater => all.products[i * (i - 1) / 2 + j] / (samples as f64 - 1.0),
-        std::cmp::Ordering::Less => all.products[j * (j - 1) / 2 + i] / (samples as f64 - 1.0),
+    let covariance = DMatrix::from_fn(outputs.len(), outputs.len(), |i, j| {
+        let (high, low) = (i.max(j), i.min(j));
+        match (high == low, random) {
+            (true, _) => outputs[i].variance.value,
+            (false, true) => all.products[high * (high - 1) / 2 + low] / (samples as f64 - 1.0),
+            (false, false) => all.products[high * (high - 1) / 2 + low] / samples as f64 + of_means(i, j),
+        }
     });
     Ok(Sampled { samples, outputs, covariance })
+}
+
+/// The root of a variance. E √V̂ = σ (1 − Var V̂/8σ⁴ …): that bias is taken off.
+fn root(variance: Estimate) -> Estimate {
+    let Estimate { value, error, freedom } = variance;
+    if value <= 0.0 {
+        return Estimate { value: 0.0, error: error.sqrt(), freedom };
+    }
+    Estimate { value: value.sqrt() * (1.0 + (error / value).powi(2) / 8.0), error: 0.5 * error / value.sqrt(), freedom }
 }
 
 /// The answers themselves: of each sample of one replicate, output after output. For few samples.

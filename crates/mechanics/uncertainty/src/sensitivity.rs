@@ -2,9 +2,10 @@
 //!
 //! With two independent points A and B, and A_i = A with coordinate i of B:
 //! `S_i = E[f(B) (f(A_i) − f(A))] / V` (Saltelli et al., 2010) and `T_i = E[(f(A) − f(A_i))²] / 2V` (Jansen, 1999). f has its mean taken off, which
-//! changes neither and makes S less noisy. Cost: N (d + 2) evaluations. Standard errors are those of the replicates.
+//! changes neither and makes S less noisy. Cost: N (d + 2) evaluations. V has no bias (`sampling.rs`), and the jackknife over the replicates takes
+//! off that of the ratio and gives its standard error.
 
-use crate::moments::Moments;
+use crate::estimate::jackknife;
 use crate::sampling::{BLOCK, Stream, in_order, pool, tasks};
 use crate::{Error, Estimate, LANES, Lanes, Response, Sampling, Space, at};
 use featherbench_spatial::Real;
@@ -37,11 +38,11 @@ pub fn sensitivity<R: Response>(space: &Space, response: &R, settings: &Sampling
     }
     let (n, outputs, replicates) = (space.len(), response.outputs(), settings.replicates);
     let each = settings.samples.div_ceil(replicates.max(1));
-    if replicates < 2 || each < 2 {
+    if replicates < 3 || each < 2 {
         return Err(Error::Setting {
             setting: "samples",
             found: settings.samples,
-            demand: "two at least in each of two replicates at least",
+            demand: "two at least in each of three replicates at least",
         });
     }
     let streams = Stream::all(settings.points, 2 * n, settings.seed, replicates)?;
@@ -69,15 +70,20 @@ pub fn sensitivity<R: Response>(space: &Space, response: &R, settings: &Sampling
     )?;
     let found: Vec<Sums> = found.into_iter().flatten().collect();
     let index = |output: usize, i: usize, which: usize| {
-        let of = |sums: &Sums| {
-            let [sum, square] = sums.plain[output];
-            let double = 2.0 * sums.count;
-            let variance = square / double - (sum / double).powi(2);
-            sums.pairs[output * n + i][which] / sums.count / variance * if which == 0 { 1.0 } else { 0.5 }
+        // Of all replicates, or of all but one.
+        let of = |without: Option<usize>| -> f64 {
+            let kept = || found.iter().enumerate().filter(move |(r, _)| Some(*r) != without).map(|(_, sums)| sums);
+            let count = kept().count() as f64;
+            let mean = |value: &dyn Fn(&Sums) -> f64| kept().map(value).sum::<f64>() / count;
+            let middle = |sums: &Sums| sums.plain[output][0] / (2.0 * sums.count);
+            let [all, square] = [mean(&middle), mean(&|sums| sums.plain[output][1] / (2.0 * sums.count))];
+            let of_mean = mean(&|sums| (middle(sums) - all).powi(2)) / (count - 1.0);
+            let variance = square - all * all + of_mean;
+            let part = mean(&|sums| sums.pairs[output * n + i][which] / sums.count) * if which == 0 { 1.0 } else { 0.5 };
+            // No variable explains a part of nothing.
+            if variance > 0.0 { part / variance } else { 0.0 }
         };
-        let values: Vec<f64> = found.iter().map(of).collect();
-        let moments = Moments::of(&values);
-        Estimate { value: moments.mean, error: moments.mean_error() }
+        jackknife(of(None), &(0..found.len()).map(|r| of(Some(r))).collect::<Vec<f64>>())
     };
     let of = |output: usize| Indices {
         first: (0..n).map(|i| index(output, i, 0)).collect(),

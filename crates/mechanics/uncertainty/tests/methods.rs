@@ -1,6 +1,8 @@
 //! Methods on functions with known moments.
 
+use crate::share::one_of;
 use featherbench_model::Distribution;
+use featherbench_robots::Random;
 use featherbench_uncertainty::{
     Closure, Error, Histogram, Linear, Points, Sampling, Space, chaos, draw, first_order, mixture, sample, sensitivity, unscented,
 };
@@ -142,6 +144,33 @@ fn what_makes_no_sense_is_refused() {
     assert_eq!(Space::independent(&[]).unwrap_err(), Error::NoVariables);
     assert!(Space::independent(&[Distribution::Uniform { low: 1.0, high: f64::NAN }]).unwrap_err().to_string().contains("high is NaN"));
     assert!(Space::independent(&[Distribution::TruncatedNormal { mean: 0.0, deviation: 1.0, low: 9.0, high: 10.0 }]).is_err());
+}
+
+/// The reason that is given for a refused order is the true one, and the order that is advised is the highest that works.
+#[test]
+fn refused_orders_are_refused_for_their_reason() {
+    let mut random = Random::named(1, "orders");
+    for _ in 0..200 / one_of(4) {
+        let variables = 1 + random.below(40) as usize;
+        let order = 1 + random.below(if variables < 3 { 80 } else { 12 }) as usize;
+        let space = Space::independent(&vec![Distribution::Uniform { low: 0.9, high: 1.1 }; variables]).unwrap();
+        let sum = Closure::new(variables, 1, |x: &[f64], y: &mut [f64]| y[0] = x.iter().sum());
+        let nodes = |order: usize| ((order + 1) as f64).powi(variables as i32);
+        match chaos(&space, &sum, order) {
+            Ok(found) => assert!(found.nodes as f64 == nodes(order) && order <= 38, "{order} {variables}"),
+            Err(Error::OrderTooHigh { limit, highest, .. }) => {
+                assert!(order > limit && limit == 38 && highest <= limit && nodes(highest) <= 262_144.0, "{order} {variables}");
+                assert!(variables > 1 || chaos(&space, &sum, highest).is_ok());
+            }
+            Err(Error::TooManyNodes { points, limit, highest, .. }) => {
+                assert!(points == order + 1 && nodes(order) > limit as f64, "{order} {variables}");
+                assert!(nodes(highest) <= limit as f64 && nodes(highest + 1) > limit as f64, "{order} {variables}");
+            }
+            Err(other) => panic!("{other}"),
+        }
+    }
+    let text = chaos(&uniform(), &reciprocal(), 40).unwrap_err().to_string();
+    assert!(text.contains("order 40 is above 38"), "{text}");
 }
 
 #[test]

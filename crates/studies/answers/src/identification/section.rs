@@ -131,7 +131,7 @@ fn body(rows: &[&Row], chunk: &str) -> Markup {
                     li { "Without noise every estimator finds the base parameters to " (short(error)) " of the largest." }
                 }
                 @if let Some(error) = worst(rows, "scatter", "variance_error") {
-                    li { "With noise a thousand estimates scatter as σ²(YᵀY)⁻¹ says, to " (short(100.0 * error)) " %." }
+                    li { "With noise thousands of estimates scatter as σ²(YᵀY)⁻¹ says, to " (short(100.0 * error)) " %." }
                 }
                 @if let Some(ratio) = worst(rows, "with_noise", "held_out_over_noise") {
                     li { "Another trajectory is predicted to " (short(ratio)) " of the noise. Estimates by log-Cholesky numbers are bodies that can exist; those of least squares need not be." }

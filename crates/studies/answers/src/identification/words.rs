@@ -26,6 +26,7 @@ pub(crate) const WORDS: Words = Words {
         ("condition_over_first", "the condition number after the search, over that of the first draw"),
         ("broken_limits", "samples beyond a limit of the robot"),
         ("held_out_over_noise", "root mean square error of torques that were held out, over the noise"),
+        ("held_out_deviation", "how far the mean square of that error is above what least squares are due, in normal deviations"),
         ("before_over_noise", "the same, of the nominal parameters"),
         ("impossible_bodies", "bodies whose estimated parameters no mass distribution has"),
         ("smallest_eigenvalue", "smallest eigenvalue of the pseudo-inertia, over the largest where it has no unit"),

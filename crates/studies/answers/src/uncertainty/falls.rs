@@ -3,7 +3,7 @@
 //! With s = √(2 g x₀): before the impact v = −gT; after it, v = (1 + e) s − gT. It has met the ground if x₀ < gT²/2. All drops without an impact
 //! have the same velocity, an atom of the distribution. The line through the mean height knows of that mode alone.
 
-use super::{Case, count, deviation, error, failed, largest, told};
+use super::{Case, count, error, failed, largest, told};
 use featherbench_bench::NoAnswer;
 use featherbench_hybrid::systems::BouncingBall;
 use featherbench_hybrid::{Settings, Start, simulate};
@@ -111,6 +111,15 @@ fn closed() -> Case {
     }
 }
 
+/// How far the share of the samples that something happens to is from its probability: √(2 N D) with the divergence D of both. It is beyond z with
+/// the probability 2 exp(−z²/2) at most, for any number of samples and any probability (H. Chernoff, 1952).
+fn share_deviation(share: f64, probability: f64) -> f64 {
+    let part = |share: f64, probability: f64| if share > 0.0 { share * (share / probability).ln() } else { 0.0 };
+    let divergence = part(share, probability) + part(1.0 - share, 1.0 - probability);
+    // Of equal numbers it rounds to either side of zero.
+    (2.0 * SAMPLES as f64 * divergence).max(0.0).sqrt()
+}
+
 fn sampled() -> Case {
     Case {
         name: "drop".into(),
@@ -135,11 +144,11 @@ fn sampled() -> Case {
             let own = &impact.moments;
             Ok(vec![
                 found.modes.len() as f64,
-                deviation(impact.weight.value, known.0, impact.weight.error),
-                deviation(found.all.mean, mean, found.all.mean_error()),
-                deviation(found.all.variance(), variance, found.all.variance_error()),
-                deviation(own.mean, known.1, own.mean_error()),
-                deviation(own.variance(), known.2, own.variance_error()),
+                share_deviation(impact.weight.value, known.0),
+                found.all.mean_estimate().deviations(mean),
+                found.all.variance_estimate().deviations(variance),
+                own.mean_estimate().deviations(known.1),
+                own.variance_estimate().deviations(known.2),
             ])
         }),
     }
@@ -213,9 +222,7 @@ fn density(bin: u32) -> Case {
             let height = |v: f64| ((v + GRAVITY * TIME) / (1.0 + RESTITUTION)).powi(2) / (2.0 * GRAVITY);
             let below = |v: f64| normal_cdf((height(v).min(critical()) - HEIGHT[0]) / HEIGHT[1]);
             let known = below(ends[1]) - below(ends[0]);
-            // A count is nearly Poisson's: one more keeps the error of few from vanishing.
-            let standard = ((known * (1.0 - known) * SAMPLES as f64 + 1.0).sqrt()) / SAMPLES as f64;
-            Ok(vec![(part - known).abs() / standard, part / width, known / width])
+            Ok(vec![share_deviation(part, known), part / width, known / width])
         }),
     }
 }

@@ -37,9 +37,3 @@ pub const ENTRY: Entry = Entry {
 fn cases() -> Vec<Case> {
     [ratios::cases(), arms::cases(), rates::cases(), falls::cases(), torques::cases()].into_iter().flatten().collect()
 }
-
-/// |found − known| in standard errors; zero where both are the same to rounding.
-fn deviation(found: f64, known: f64, standard_error: f64) -> f64 {
-    let rounding = 8.0 * f64::EPSILON * known.abs();
-    (found - known).abs() / (standard_error + rounding)
-}

@@ -96,7 +96,7 @@ fn body(rows: &[&Row], figures: &Figures, chunk: &str) -> Markup {
                         @for (k, (name, slope, _)) in slopes.iter().enumerate() { @if k > 0 { ", " } (short(*slope)) " (" (name) ")" } "."
                     }
                 }
-                li { "A deviation is a difference to the known value in standard errors. Results of one thread and of two are the same to the bit." }
+                li { "A deviation is a difference to the known value in standard errors, as improbable as that of a normal variable. Results of one thread and of two are the same to the bit." }
             }
             div.pair {
                 (drawings::rates(figures))

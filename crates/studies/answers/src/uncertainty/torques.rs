@@ -1,11 +1,11 @@
 //! Six equal carts whose one mass is uncertain: six torques that are always equal. (The lesson's MATLAB lab: M = m·1.)
 
-use super::{Case, count, deviation, error, failed, largest};
+use super::{Case, count, error, failed, largest};
 use featherbench_model::{
     Acts, BodyDescription, Description, Distribution, JointDescription, JointType, Target, TargetField, UncertainVariable,
 };
 use featherbench_robots::Random;
-use featherbench_uncertainty::{Points, Quantity, RobotResponse, Space, State, chaos, draw};
+use featherbench_uncertainty::{Estimate, Points, Quantity, RobotResponse, Space, State, chaos, draw};
 use serde_json::json;
 
 const CARTS: usize = 6;
@@ -77,9 +77,10 @@ pub(super) fn cases() -> Vec<Case> {
             let (means, deviations): (Vec<f64>, Vec<f64>) = sets.map(|set| (set.mean, set.variance().sqrt())).unzip();
             let of = |values: &[f64], known: f64| {
                 let found = featherbench_uncertainty::Moments::of(values);
-                let spread = found.variance().sqrt();
+                let value = found.variance().sqrt();
                 // The error of a spread is that of its variance over twice the spread; the closed form leaves out the order 1/N.
-                deviation(spread, known, found.variance_error() / (2.0 * spread) + known / n)
+                let error = found.variance_error() / (2.0 * value) + known / n;
+                Estimate { value, error, freedom: found.count - 1.0 }.deviations(known)
             };
             Ok(vec![first.covariance.rank(1e-10) as f64, low, high, moment_error, of(&means, known[0]), of(&deviations, known[1])])
         }),
