@@ -18,6 +18,7 @@ mod planted;
 mod residuals;
 mod resume;
 mod schema;
+mod sections;
 mod shards;
 #[path = "../../mechanics/robots/tests/share.rs"]
 mod share;
