@@ -4,6 +4,7 @@ mod alone;
 mod bad_input;
 mod command_line;
 mod conventions;
+mod damage;
 mod datasets;
 mod described;
 mod direction;
