@@ -38,8 +38,8 @@ fn robots_of(command: &str) -> Robots {
         ]),
         "identify" => Robots::ByFile(&[
             ("motion", &["identify", "ROBOT", "--excite", "OUT"]),
-            ("log", &["identify", "ROBOT", "LOG", "--window", "1", "--method", "ordinary"]),
-            ("log, all terms", &["identify", "ROBOT", "LOG", "--window", "1", "--terms", "armature,viscous,coulomb,offset"]),
+            ("log", &["identify", "ROBOT", "LOG", "--window", "11", "--method", "ordinary"]),
+            ("log, all terms", &["identify", "ROBOT", "LOG", "--window", "11", "--terms", "armature,viscous,coulomb,offset"]),
         ]),
         "gen" => Robots::ByFile(&[
             ("description", &["gen", "neutral", "--file", "ROBOT"]),
