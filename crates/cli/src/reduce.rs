@@ -9,7 +9,7 @@ use crate::message::{say, tell};
 use crate::oracles;
 use crate::robots;
 use crate::root::Root;
-use ::featherbench_results::{Row, RunInfo};
+use ::featherbench_results::{Checksums, Row, RunInfo};
 use featherbench_bench::{Engine, OWN, Robot};
 use featherbench_engines::{Featherbench, Limits};
 use featherbench_reduction::{self as reduction, CATALOGUE, CATALOGUE_NAME, Catalogue, Reducing, Status, save, told};
@@ -70,6 +70,7 @@ pub fn reduce(root: &Root, args: &ReduceArgs) -> Result<(), Fail> {
     save(&folder.join("README.md"), &catalogue.readme())?;
     // Last: a catalogue names no file that is not there.
     save(&path, &format!("{}\n", serde_json::to_string_pretty(&catalogue).map_err(|error| Fail::input(error.to_string()))?))?;
+    Checksums::of(&folder, &[CATALOGUE_NAME])?.write()?;
     say!("{cases} cases: {}", folder.join("README.md").display());
     Ok(())
 }

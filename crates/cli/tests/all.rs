@@ -4,6 +4,7 @@ mod alone;
 mod bad_input;
 mod command_line;
 mod conventions;
+mod damage;
 mod datasets;
 mod described;
 mod direction;
@@ -18,6 +19,7 @@ mod planted;
 mod residuals;
 mod resume;
 mod schema;
+mod sections;
 mod shards;
 #[path = "../../mechanics/robots/tests/share.rs"]
 mod share;

@@ -74,7 +74,13 @@ fn a_run_of_another_program_or_suite_is_not_continued() {
     run(&["--suite", other.to_str().unwrap(), "--resume"]).expect(2, &["another suite", "--allow-mixed"]);
     run(&["--suite", other.to_str().unwrap(), "--resume", "--allow-mixed"]).expect(0, &["report:"]);
     let path = sandbox.path("out/fingerprint.json");
-    let text = std::fs::read_to_string(&path).unwrap();
-    std::fs::write(&path, text.replace("\"libm\": \"", "\"libm\": \"0")).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    let text = String::from_utf8(featherbench_results::unsealed(&bytes).unwrap().to_vec()).unwrap();
+    let altered = text.replace("\"libm\": \"", "\"libm\": \"0");
+    std::fs::write(&path, &altered).unwrap();
+    run(&["--suite", other.to_str().unwrap(), "--resume"]).expect(2, &["fingerprint.json", "damaged"]);
+    let mut sealed = altered.into_bytes();
+    featherbench_results::seal(&mut sealed);
+    std::fs::write(&path, sealed).unwrap();
     run(&["--suite", other.to_str().unwrap(), "--resume"]).expect(2, &["another libm"]);
 }

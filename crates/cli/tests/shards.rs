@@ -81,11 +81,14 @@ fn a_shard_that_does_not_fit_is_refused_by_name_and_the_rest_is_kept() {
         change(&mut bytes);
         std::fs::write(path, bytes).unwrap();
     };
-    let refusals: [Bad; 9] = [
+    let refusals: [Bad; 12] = [
         ("corrupted", &|at| edit(at, "outcomes.bin", &|bytes| *bytes.last_mut().unwrap() ^= 1), &["corrupted/outcomes.bin", "damaged"]),
         ("truncated", &|at| edit(at, "outcomes.bin", &|bytes| bytes.truncate(bytes.len() - 9)), &["truncated/outcomes.bin", "damaged"]),
+        ("printed", &|at| edit(at, "fingerprint.json", &|bytes| bytes[30] ^= 1), &["printed/fingerprint.json", "damaged"]),
+        ("logged", &|at| edit(at, "journal.jsonl", &|bytes| bytes[3] ^= 1), &["logged/journal.jsonl", "line 1", "damaged"]),
+        ("forgotten", &|at| std::fs::remove_file(at.join("journal.jsonl")).unwrap(), &["forgotten/journal.jsonl", "damaged"]),
         ("altered", &|at| edit(at, "shard.json", &|bytes| bytes[100] ^= 1), &["altered/shard.json", "checksum"]),
-        ("older", &|at| forge(at, |file| file.format = 0), &["older/shard.json", "format 0", "format 1"]),
+        ("older", &|at| forge(at, |file| file.format = 0), &["older/shard.json", "format 0", "format 2"]),
         ("unfinished", &|at| std::fs::remove_file(at.join(SHARD_NAME)).unwrap(), &["unfinished: shard 2/3 is not finished", "--resume"]),
         (
             "foreign",

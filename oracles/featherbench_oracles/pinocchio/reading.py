@@ -7,9 +7,10 @@ several joints (JointModelComposite) is taken apart. The (cos, sin) of a continu
 from __future__ import annotations
 
 import resource
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
@@ -39,9 +40,11 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Mode
         else:
             model = pin.buildModelFromUrdf(str(path))
     affordable(model.nv)
-    links = without_free_armature([_link(model, i, path) for i in range(1, model.njoints)], notes)
+    carried = _carried_frames(model)
+    bodies = list(elements(path, "body"))
+    links = without_free_armature([_link(model, i, bodies, carried) for i in range(1, model.njoints)], notes)
     description = describe(model.name or path.stem, model.gravity.linear, links)
-    _add_frames(description, model)
+    _add_frames(description, model, carried)
     _note_mimics(path, notes)
     _note_gravity(path, model, notes)
     notes.extend(mentioned(path))
@@ -87,16 +90,16 @@ def _turning(model: pin.Model) -> list[int]:
     return indices
 
 
-def _link(model: pin.Model, i: int, path: Path) -> Link:
+def _link(model: pin.Model, i: int, bodies: Sequence[ElementTree.Element], carried: dict[int, pin.Frame]) -> Link:
     """Describe joint i with the body that it carries."""
     parts = list(_parts(model.joints[i]))
-    names = [model.names[i]] if len(parts) == 1 else _names(model, i, len(parts), path)
+    names = [model.names[i]] if len(parts) == 1 else _names(model, i, len(parts), bodies, carried)
     whole = Place()  # from the whole joint's frame to what it moves
     places = []
     for _, placement in parts:
         whole = whole @ placement
         places.append(whole)
-    on_joint = _on_joint(model, i)
+    on_joint = _on_joint(carried, i)
     back = (whole @ on_joint).inverse()
     joints = []
     q, v = model.idx_qs[i], model.idx_vs[i]
@@ -106,9 +109,9 @@ def _link(model: pin.Model, i: int, path: Path) -> Link:
         joints.append(HeldJoint(name, kind, axis, pitch, on_joint.inverse() if place is whole else back @ place, dofs=dofs))
         q, v = q + joint.nq, v + joint.nv
     inertia, parent = model.inertias[i], int(model.parents[i]) - 1
-    place = _on_joint(model, parent + 1).inverse() @ _place(model.jointPlacements[i]) @ whole @ on_joint
+    place = _on_joint(carried, parent + 1).inverse() @ _place(model.jointPlacements[i]) @ whole @ on_joint
     axes, com = on_joint.rotation, on_joint.inverse() @ Place(translation=inertia.lever)
-    return Link(_carried(model, i), inertia.mass, com.translation, axes.T @ inertia.inertia @ axes, parent, place, joints)
+    return Link(_carried(model, carried, i), inertia.mass, com.translation, axes.T @ inertia.inertia @ axes, parent, place, joints)
 
 
 def _own(joint: pin.JointModel) -> Any:
@@ -126,31 +129,38 @@ def _parts(joint: pin.JointModel) -> Iterator[tuple[pin.JointModel, Place]]:
         yield part, _place(placement)
 
 
-def _names(model: pin.Model, i: int, count: int, path: Path) -> list[str]:
+def _names(
+    model: pin.Model, i: int, count: int, bodies: Sequence[ElementTree.Element], carried: dict[int, pin.Frame]
+) -> list[str]:
     """Name the parts of joint i. Pinocchio does not keep their names; those of the file are taken if its body has as many joints."""
-    link = _carried(model, i)
-    for body in elements(path, "body"):
+    link = _carried(model, carried, i)
+    for body in bodies:
         names = [joint.get("name") for joint in body if joint.tag in ("joint", "freejoint")]
         if body.get("name") == link and len(names) == count and all(names):
             return [str(name) for name in names]
     return [f"{model.names[i]} {k}" for k in range(count)]
 
 
-def _frame(model: pin.Model, i: int) -> pin.Frame | None:
-    """Find the frame of the link that joint i carries: the first body frame on it."""
-    return next((frame for frame in model.frames if i and frame.type == pin.BODY and frame.parentJoint == i), None)
+def _carried_frames(model: pin.Model) -> dict[int, pin.Frame]:
+    """Find the frame of the link that each joint carries: the first body frame on it. The world carries none.
+
+    One pass: a search for each joint would take a time that grows with the square of the number of links.
+    """
+    found: dict[int, pin.Frame] = {}
+    for frame in model.frames:
+        if frame.type == pin.BODY and frame.parentJoint:
+            found.setdefault(frame.parentJoint, frame)
+    return found
 
 
-def _carried(model: pin.Model, i: int) -> str:
+def _carried(model: pin.Model, carried: dict[int, pin.Frame], i: int) -> str:
     """Name the link that joint i carries."""
-    frame = _frame(model, i)
-    return frame.name if frame is not None else model.names[i]
+    return carried[i].name if i in carried else model.names[i]
 
 
-def _on_joint(model: pin.Model, i: int) -> Place:
+def _on_joint(carried: dict[int, pin.Frame], i: int) -> Place:
     """Find the placement of that link in joint i's frame."""
-    frame = _frame(model, i)
-    return _place(frame.placement) if frame is not None else Place()
+    return _place(carried[i].placement) if i in carried else Place()
 
 
 def _type(joint: pin.JointModel, name: str) -> tuple[str, Array | None, float]:
@@ -188,15 +198,15 @@ def _dofs(model: pin.Model, q: slice, v: slice) -> dict[str, Array]:
     return {key: value.copy() for key, value in {**dofs, **limits}.items() if key in dofs or (np.abs(value) < UNBOUNDED).all()}
 
 
-def _add_frames(description: Header, model: pin.Model) -> None:
+def _add_frames(description: Header, model: pin.Model, carried: dict[int, pin.Frame]) -> None:
     """Add a frame for each link that no joint carries."""
     bodies = {body["name"]: k for k, body in enumerate(description["bodies"])}
     frames = {frame["name"]: Place.of(frame["placement"]) for frame in description["frames"]}
-    carriers = [_carried(model, i) for i in range(model.njoints)]
+    carriers = [_carried(model, carried, i) for i in range(model.njoints)]
     for frame in model.frames:
         link = carriers[frame.parentJoint]
         if frame.type == pin.BODY and (frame.parentJoint == 0 or frame.name != link):
-            on_link = _on_joint(model, frame.parentJoint).inverse() @ _place(frame.placement)
+            on_link = _on_joint(carried, frame.parentJoint).inverse() @ _place(frame.placement)
             place = frames.get(link, Place()) @ on_link if frame.parentJoint else on_link
             body = bodies[link] if frame.parentJoint else -1
             description["frames"].append({"name": frame.name, "body": body, "placement": place.json()})

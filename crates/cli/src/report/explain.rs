@@ -2,9 +2,9 @@
 
 use crate::args::ExplainArgs;
 use crate::fail::Fail;
-use crate::message::say;
+use crate::message::{say, tell};
 use ::featherbench_results::Row;
-use featherbench_bench::{NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Quantity};
+use featherbench_bench::{Entries, NoAnswer, OUTCOMES_NAME, Outcome, Quantity};
 
 /// Prints what a cell asked, what was answered, and how it was judged.
 pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
@@ -25,9 +25,11 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
     say!("asked     {} {} by {} in {}", first.engine, first.engine_version, first.method, first.precision);
     say!("quantity  {}: {quantity}", first.quantity);
     say!("params    {}", first.params);
-    if args.folder.join(OUTCOMES_NAME).is_file() {
-        let (outcomes, lost) = OutcomeStore::look(&args.folder)?;
-        match outcomes.get(&first.cell) {
+    if args.folder.join(OUTCOMES_NAME).is_file() || info.has_file(OUTCOMES_NAME) {
+        if !info.has_file(OUTCOMES_NAME) {
+            tell!("note: {OUTCOMES_NAME} has no checksum of its own: an older version wrote the run; each entry of it has one");
+        }
+        match Entries::whole(&args.folder)?.outcome(&first.cell)? {
             Some(Outcome::Values(values)) => {
                 let head: Vec<String> = values.iter().take(6).map(|value| format!("{value:?}")).collect();
                 say!("answer    {} numbers: {}{}", values.len(), head.join(", "), if values.len() > 6 { ", …" } else { "" });
@@ -39,7 +41,7 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
             }
             Some(Outcome::NoAnswer(NoAnswer::NotOffered(reason))) => say!("answer    not offered: {reason}"),
             Some(Outcome::NoAnswer(NoAnswer::Failed(reason))) => say!("answer    failed: {reason}"),
-            None => say!("answer    not kept{}", lost.map_or_else(String::new, |lost| format!(": {lost}"))),
+            None => say!("answer    not kept"),
         }
     }
     say!("");

@@ -2,10 +2,10 @@
 
 use crate::args::HistoryArgs;
 use crate::fail::Fail;
-use crate::message::say;
+use crate::message::{say, tell};
 use crate::report::instructions;
 use crate::root::Root;
-use ::featherbench_results::{CSV_NAME, Host, RUN_NAME, Row, RunInfo, atomic_write, read_run};
+use ::featherbench_results::{CHECKSUMS_NAME, CSV_NAME, Host, RUN_NAME, Row, RunInfo, atomic_write, read_run};
 use featherbench_report::runs::{self, Past};
 use featherbench_speed::InstructionCounts;
 use std::path::Path;
@@ -17,14 +17,19 @@ const LIMIT: usize = 24_000;
 
 /// Writes a page over the runs of a folder, or appends the times of one run to the history of its machine.
 pub fn history(root: &dyn Fn() -> Result<Root, Fail>, args: &HistoryArgs) -> Result<(), Fail> {
-    if args.folder.join(RUN_NAME).is_file() || !args.folder.is_dir() {
+    if [RUN_NAME, CHECKSUMS_NAME].iter().any(|name| args.folder.join(name).is_file()) || !args.folder.is_dir() {
         return append(root, args);
     }
     let mut runs = Vec::new();
     for entry in std::fs::read_dir(&args.folder).map_err(|error| failed(&args.folder, &error))? {
         let path = entry.map_err(|error| failed(&args.folder, &error))?.path();
-        // A run that has not ended has no rows yet.
-        if path.join(CSV_NAME).is_file() && path.join(RUN_NAME).is_file() {
+        // A run that has not ended has no checksums yet.
+        if [CSV_NAME, RUN_NAME].iter().any(|name| path.join(name).is_file()) && !path.join(CHECKSUMS_NAME).is_file() {
+            tell!(
+                "note: {}: the run is left out: it has no {CHECKSUMS_NAME}, so it did not finish, or an older version wrote it",
+                path.display()
+            );
+        } else if path.join(CHECKSUMS_NAME).is_file() {
             let (info, rows) = read_run(&path)?;
             runs.push(Past { folder: path.file_name().unwrap_or_default().to_string_lossy().into_owned(), info, rows });
         }

@@ -6,6 +6,7 @@ use crate::message::tell;
 use crate::message::{say, text};
 use crate::report::parquet;
 use crate::robots::generate;
+use crate::robots::sections::{Taker, heed};
 use crate::root::Root;
 use crate::{oracles, robots};
 use featherbench_bench::{Engine, FileContent, FileFormat, SemidefiniteProblem};
@@ -33,10 +34,12 @@ const SHOWN: usize = 24;
 /// Identifies a robot, or writes a motion.
 pub fn identify(root: &dyn Fn() -> Result<Root, Fail>, args: &IdentifyArgs) -> Result<(), Fail> {
     let description = robot(root, args)?;
+    let taker = if args.excite.is_some() { Taker::Excitation } else { Taker::Identification };
+    let not_used = heed(&description, &args.robot.display().to_string(), taker)?;
     let linear = LinearModel::new(&description, terms(&args.terms)).map_err(bad)?;
     match (&args.excite, &args.log) {
-        (Some(path), _) => motion(&linear, args, path),
-        (None, Some(log)) => from_log(root, &linear, args, log),
+        (Some(path), _) => motion(&linear, args, path, &not_used),
+        (None, Some(log)) => from_log(root, &linear, args, log, &not_used),
         (None, None) => Err(Fail::input("give a log, or --excite FILE".into())),
     }
 }
@@ -66,7 +69,7 @@ fn terms(asked: &[Term]) -> Terms {
 }
 
 /// Searches an exciting motion and writes it as a log with the torques that the description predicts.
-fn motion(linear: &LinearModel, args: &IdentifyArgs, path: &Path) -> Result<(), Fail> {
+fn motion(linear: &LinearModel, args: &IdentifyArgs, path: &Path, not_used: &[&str]) -> Result<(), Fail> {
     let base = Base::of_robot(linear, 1).map_err(bad)?;
     let found = excite(linear, &base, &Search { frequency: args.frequency, ..Search::default() }).map_err(bad)?;
     let samples = found.trajectory.samples(linear, &linear.nominal(), SAMPLES, 1.0).map_err(bad)?;
@@ -74,7 +77,7 @@ fn motion(linear: &LinearModel, args: &IdentifyArgs, path: &Path) -> Result<(), 
     if args.json {
         let answer = json!({
             "base_parameters": base.rank(), "condition": found.condition, "condition_of_scaled_columns": found.scaled,
-            "condition_of_first_draw": found.first, "tried": found.tried, "seconds": 1.0 / args.frequency,
+            "condition_of_first_draw": found.first, "tried": found.tried, "seconds": 1.0 / args.frequency, "not_used": not_used,
         });
         say!("{answer}");
         return Ok(());
@@ -91,7 +94,13 @@ fn motion(linear: &LinearModel, args: &IdentifyArgs, path: &Path) -> Result<(), 
     Ok(())
 }
 
-fn from_log(root: &dyn Fn() -> Result<Root, Fail>, linear: &LinearModel, args: &IdentifyArgs, path: &Path) -> Result<(), Fail> {
+fn from_log(
+    root: &dyn Fn() -> Result<Root, Fail>,
+    linear: &LinearModel,
+    args: &IdentifyArgs,
+    path: &Path,
+    not_used: &[&str],
+) -> Result<(), Fail> {
     if args.window.is_multiple_of(2) {
         return Err(Fail::input(format!("--window {}: give an odd number of rows, so that one is in the middle", args.window)));
     }
@@ -135,7 +144,7 @@ fn from_log(root: &dyn Fn() -> Result<Root, Fail>, linear: &LinearModel, args: &
         None => described(linear, &found.theta).map(|robot| changes(linear.description(), &robot)).unwrap_or_default(),
     };
     if args.json {
-        say!("{}", answer(linear, &found, &flags, &changed))
+        say!("{}", answer(linear, &found, &flags, &changed, not_used))
     } else {
         text(&told(linear, &found, &flags, &changed, path))
     }
@@ -231,7 +240,7 @@ fn told(linear: &LinearModel, found: &Identified, flags: &[Flag], changed: &[Cha
 }
 
 /// The answer for programs. What is not a number is null.
-fn answer(linear: &LinearModel, found: &Identified, flags: &[Flag], changed: &[Change]) -> Value {
+fn answer(linear: &LinearModel, found: &Identified, flags: &[Flag], changed: &[Change], not_used: &[&str]) -> Value {
     let fit = |fit: &featherbench_identification::Fit| {
         json!({
             "relative": fit.total, "rms": fit.rms, "relative_to_spread": fit.relative,
@@ -246,6 +255,7 @@ fn answer(linear: &LinearModel, found: &Identified, flags: &[Flag], changed: &[C
     let parameters = unknowns
         .map(|((unknown, value), before)| json!({"name": unknown.name(), "unit": unknown.unit(), "before": before, "value": value}));
     json!({
+        "not_used": not_used,
         "robot": linear.description().name,
         "method": found.method.name(),
         "samples": found.fitted,

@@ -3,11 +3,13 @@
 pub mod generate;
 pub mod identify;
 pub mod residuals;
+mod sections;
 pub mod uncertainty;
 
 use crate::fail::Fail;
 use crate::message::tell;
 use crate::oracles;
+use crate::robots::sections::{Taker, heed};
 use crate::root::Root;
 use ::featherbench_results::ModelOrigin;
 use featherbench_bench::{FileBase, FileContent, FileFormat, Robot, RobotEntry, RobotSource, Suite, did_you_mean};
@@ -74,6 +76,8 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>, size: Optio
             if !names.insert(robot.name.clone()) {
                 return Err(Fail::input(format!("{}: two robots are named '{}'", path.display(), robot.name)));
             }
+            let residuals = parsed.studies.iter().any(|study| study == "residuals" && robot.takes(study));
+            heed(&robot.description, &robot.name, Taker::Suite { residuals })?;
             robots.push(robot);
         }
     }

@@ -4,6 +4,7 @@ use crate::args::ResidualsArgs;
 use crate::fail::Fail;
 use crate::message::say;
 use crate::robots;
+use crate::robots::sections::{Taker, heed};
 use crate::root::Root;
 use featherbench_model::Model;
 use featherbench_residuals::{Described, Nominal, Residual, Rigid, State};
@@ -34,6 +35,7 @@ pub fn correct(root: impl Fn() -> Result<Root, Fail>, args: &ResidualsArgs) -> R
             args.robot
         )));
     }
+    let not_used = heed(&robot, &args.robot, Taker::Residuals)?;
     let described = Described::of(&robot).map_err(|error| bad(&error))?;
     let model: Model<f64> = Model::build(&robot).map_err(|error| bad(&error))?;
     let StateFile { q, v, a, tau, inner } = state(&model, described.inner(), args)?;
@@ -55,7 +57,7 @@ pub fn correct(root: impl Fn() -> Result<Root, Fail>, args: &ResidualsArgs) -> R
             json!({
                 "robot": robot.name, "seed": args.state.is_none().then_some(args.seed), "q": q, "v": v, "a": a, "tau": tau, "inner": inner,
                 "nominal_torque": nominal_tau, "true_torque": true_tau, "nominal_acceleration": nominal_a, "true_acceleration": found.a,
-                "dry_friction": found.friction, "stuck": found.stuck, "parts": parts,
+                "dry_friction": found.friction, "stuck": found.stuck, "parts": parts, "not_used": not_used,
                 "reciprocal_condition": posed.reciprocal_condition, "smallest_eigenvalue": posed.smallest_eigenvalue,
             })
         );

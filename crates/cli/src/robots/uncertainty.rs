@@ -4,6 +4,7 @@ use crate::args::{Propagation, UncertaintyArgs};
 use crate::fail::Fail;
 use crate::message::{say, tell};
 use crate::robots;
+use crate::robots::sections::{Taker, heed};
 use crate::root::Root;
 use featherbench_bench::measure::{ratio, worst};
 use featherbench_model::{Description, Model};
@@ -42,6 +43,8 @@ struct Line {
 pub fn propagate(root: impl Fn() -> Result<Root, Fail>, args: &UncertaintyArgs) -> Result<(), Fail> {
     let bad = |error: featherbench_uncertainty::Error| Fail::input(format!("{}: {error}", args.robot));
     let mut robot = robots::named(root, &args.robot)?;
+    let own = args.spread.is_none() && !robot.uncertain.variables.is_empty();
+    let not_used = heed(&robot, &args.robot, Taker::Uncertainty { own })?;
     let source = match (args.spread, robot.uncertain.variables.is_empty()) {
         (None, false) => "the description's own parameters".to_owned(),
         (given, _) => {
@@ -126,7 +129,7 @@ pub fn propagate(root: impl Fn() -> Result<Root, Fail>, args: &UncertaintyArgs) 
             json!({
                 "robot": robot.name, "quantity": if args.torque { "torque" } else { "acceleration" }, "method": args.method.name(),
                 "seed": args.seed, "evaluations": evaluations, "seconds": seconds, "variables": names, "dofs": dofs, "indices": found,
-                "losses": response.is_lossy(),
+                "losses": response.is_lossy(), "not_used": not_used,
             })
         );
         return Ok(());

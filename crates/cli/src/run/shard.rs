@@ -5,14 +5,13 @@ use crate::fail::Fail;
 use crate::message::say;
 use crate::progress::Bar;
 use crate::run::{Prepared, opening};
-use ::featherbench_results::{RunInfo, checksum_of};
+use ::featherbench_results::RunInfo;
 use featherbench_bench::run::Run;
-use featherbench_bench::shard::{Costs, Plan, Shard, ShardFile};
+use featherbench_bench::shard::{Costs, Plan, Shard, ShardFile, journal};
 use featherbench_bench::{Entries, HarnessError, OUTCOMES_NAME};
 use serde_json::json;
 use std::collections::HashSet;
-use std::fs::{File, OpenOptions};
-use std::io::Write;
+use std::fs::File;
 use std::path::Path;
 
 /// The plan of a run; its costs are those of earlier runs where they are known.
@@ -21,8 +20,6 @@ pub fn plan(prepared: &Prepared, args: &RunArgs) -> Result<Plan, Fail> {
     Ok(Plan::new(&prepared.studies, &prepared.context(), &|cell| prepared.keeps(cell), &costs))
 }
 
-/// What was started in a folder, one line of JSON each: the rounds of a sweep, the processes of a shard.
-const JOURNAL_NAME: &str = "journal.jsonl";
 /// The file whose lock the process has that evaluates a shard. Another one waits: a task may be started again while its first process lives on.
 const LOCK_NAME: &str = "lock";
 
@@ -36,24 +33,12 @@ pub fn evaluate(prepared: &Prepared, args: &RunArgs, shard: Shard, folder: &Path
     let _lock = lock.map_err(|source| HarnessError::io(folder, source))?;
     let mine: HashSet<String> = ids.iter().cloned().collect();
     let kept = if folder.join(OUTCOMES_NAME).exists() { Entries::open(folder)?.cells().count() } else { 0 };
-    journal(folder, &json!({ "process": std::process::id(), "time": started, "cells": ids.len(), "kept": kept }))?;
+    // A shard's journal has its processes.
+    let line = [("process", json!(std::process::id())), ("time", json!(started)), ("cells", json!(ids.len())), ("kept", json!(kept))];
+    journal::append(folder, line)?;
     run.evaluate(&prepared.studies, &prepared.context(), &|cell| prepared.keeps(cell), &mine, &Bar::new())?;
-    let mut file = ShardFile::new(shard, &run.info, args.defining(), ids);
-    let entries = Entries::open(folder)?;
-    file.seconds = file.cells.iter().filter_map(|id| entries.seconds(id)).sum();
-    file.outcomes = checksum_of(&folder.join(OUTCOMES_NAME))?;
-    file.write(folder)?;
+    let file = ShardFile::new(shard, &run.info, args.defining(), ids).finish(folder)?;
     say!("shard {shard}: {} of {} cells, {:.1} s of work, in {}", file.cells.len(), plan.cells.len(), file.seconds, folder.display());
     say!("when all shards are there: featherbench merge DIR… --out DIR");
-    Ok(())
-}
-
-/// Appends a line to the journal of a folder.
-pub fn journal(folder: &Path, line: &serde_json::Value) -> Result<(), Fail> {
-    let path = folder.join(JOURNAL_NAME);
-    let io = |source| HarnessError::io(&path, source);
-    let mut file = OpenOptions::new().create(true).append(true).open(&path).map_err(io)?;
-    // In one call: lines of two processes do not mix.
-    file.write_all(format!("{line}\n").as_bytes()).map_err(io)?;
     Ok(())
 }

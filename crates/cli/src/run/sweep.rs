@@ -12,9 +12,9 @@ use crate::run::hyperqueue::{self, Driver, Task, Wanted};
 use crate::run::merge;
 use crate::run::plan;
 use crate::run::shard;
-use ::featherbench_results::atomic_write;
+use ::featherbench_results::{atomic_write, seal, unsealed};
 use featherbench_bench::HarnessError;
-use featherbench_bench::shard::{Part, Plan, SHARD_NAME};
+use featherbench_bench::shard::{Part, Plan, SHARD_NAME, journal};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -94,7 +94,8 @@ pub fn sweep(root: &Root, args: &SweepArgs) -> Result<(), Fail> {
         let workers = args.workers.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
         let wanted = Wanted { server: args.server_dir.as_deref(), workers, crashes: CRASHES, tasks };
         let driver = Driver::start(root, &python)?;
-        shard::journal(&folder, &json!({ "round": round, "tasks": numbers, "driver": driver.id(), "time": now() }))?;
+        let line = [("round", json!(round)), ("tasks", json!(numbers)), ("driver", json!(driver.id())), ("time", json!(now()))];
+        journal::append(&folder, line)?;
         match driver.drive(&wanted) {
             Ok(failed) => failed.iter().for_each(|(name, why)| tell!("note: {name}: {why}")),
             Err(why) => tell!("note: the process that gives HyperQueue its tasks: {why}"),
@@ -131,7 +132,9 @@ fn open(root: &Root, args: &SweepArgs, whole: &RunArgs) -> Result<(PathBuf, Swee
         let path = folder.join(SWEEP_NAME);
         let read =
             std::fs::read(&path).map_err(|error| Fail::input(format!("{}: there is no sweep to go on with: {error}", path.display())))?;
-        let known: Sweep = serde_json::from_slice(&read).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?;
+        let damaged = |what: String| Fail::input(format!("{}: {what}", path.display()));
+        let body = unsealed(&read).ok_or_else(|| damaged("its last line is not the checksum of the others: it was damaged".into()))?;
+        let known: Sweep = serde_json::from_slice(body).map_err(|error| damaged(error.to_string()))?;
         if known.arguments != arguments {
             let (then, now) = (known.arguments.join(" "), arguments.join(" "));
             return Err(Fail::input(format!("{}: the sweep in it is another: `{then}`, and not `{now}`", folder.display())));
@@ -149,8 +152,10 @@ fn open(root: &Root, args: &SweepArgs, whole: &RunArgs) -> Result<(PathBuf, Swee
     }
     std::fs::create_dir_all(&folder).map_err(io)?;
     let folder = absolute(&folder)?;
-    let text = serde_json::to_string_pretty(&sweep).map_err(|error| Fail::input(error.to_string()))?;
-    atomic_write(&folder.join(SWEEP_NAME), text.as_bytes())?;
+    let mut bytes = serde_json::to_string_pretty(&sweep).map_err(|error| Fail::input(error.to_string()))?.into_bytes();
+    bytes.push(b'\n');
+    seal(&mut bytes);
+    atomic_write(&folder.join(SWEEP_NAME), &bytes)?;
     let largest = plan::totals(&plan, &plan.cut(sweep.shards), sweep.shards).into_iter().map(|(_, seconds)| seconds).max_by(f64::total_cmp);
     tell!(
         "{} cells of about {:.1} s in {} tasks, the largest of about {:.1} s, {} of them alone",

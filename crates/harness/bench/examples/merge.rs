@@ -7,7 +7,7 @@
 use featherbench_bench::run::{Opening, Run, Silent};
 use featherbench_bench::shard::{Costs, Merge, Part, Plan, Shard, ShardFile};
 use featherbench_bench::{Asked, Cell, Context, Finished, Gates, NoAnswer, OUTCOMES_NAME, Outcome, Robot, Study, provenance};
-use featherbench_results::{Dictionary, ModelOrigin, Relation, Row, RunInfo, Verdict, checksum_of};
+use featherbench_results::{Dictionary, ModelOrigin, Relation, Row, RunInfo, Verdict};
 use featherbench_robots::{Family, Random};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -129,9 +129,8 @@ fn evaluate(studies: &[Box<dyn Study>], context: &Context, plan: &Plan, shard: S
     let ids: Vec<String> = plan.part(shard).into_iter().map(|planned| planned.id.clone()).collect();
     let run = Run::open_shard(folder, Opening::New, info, shard, ids.iter().map(String::as_str))?;
     run.evaluate(studies, context, &|_| true, &ids.iter().cloned().collect(), &Silent)?;
-    let mut file = ShardFile::new(shard, &run.info, Vec::new(), ids);
-    file.outcomes = checksum_of(&folder.join(OUTCOMES_NAME))?;
-    Ok(file.write(folder)?)
+    ShardFile::new(shard, &run.info, Vec::new(), ids).finish(folder)?;
+    Ok(())
 }
 
 /// The most memory that this process has had, in MiB.

@@ -42,7 +42,7 @@ pub enum HarnessError {
         now: String,
     },
     /// There is no run to continue.
-    #[error("{path} holds no run to resume; leave out --resume to start one")]
+    #[error("{path} holds no run to resume: it has no fingerprint.json; leave out --resume to start one")]
     NothingToResume {
         /// The folder.
         path: PathBuf,

@@ -3,7 +3,7 @@
 
 use featherbench_bench::run::{Progress, Silent, compare, evaluate, plan};
 use featherbench_bench::{
-    Asked, Cell, Context, Finished, Gates, HarnessError, Lost, NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Robot, Study,
+    Asked, Cell, Context, Entries, Finished, Gates, HarnessError, Lost, NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Robot, Study,
 };
 use featherbench_protocol::Message;
 use featherbench_results::{ModelOrigin, Row, Verdict};
@@ -204,12 +204,15 @@ fn a_flipped_bit_never_makes_other_rows() {
         let mut flipped = bytes.clone();
         flipped[at] ^= 1 << random.below(8);
         std::fs::write(folder.path().join(OUTCOMES_NAME), &flipped).unwrap();
-        let (found, lost) = OutcomeStore::look(folder.path()).unwrap();
-        let lost = lost.unwrap_or_else(|| panic!("nothing was noticed at {at}")).to_string();
-        assert!(lost.contains(OUTCOMES_NAME) && lost.contains(&format!("entry {}:", found.len() + 1)), "{lost}");
+        let entries = Entries::open(folder.path()).unwrap();
+        let found = entries.cells().count();
+        let lost = entries.lost().unwrap_or_else(|| panic!("nothing was noticed at {at}")).to_string();
+        assert!(lost.contains(OUTCOMES_NAME) && lost.contains(&format!("entry {}:", found + 1)), "{lost}");
+        let refused = Entries::whole(folder.path()).unwrap_err().to_string();
+        assert!(refused.contains(OUTCOMES_NAME), "{refused}");
         let study = Counting::default();
         assert_eq!(run_in(folder.path(), &study, &Silent).unwrap(), csv, "at {at}");
-        assert_eq!(study.counts().len(), ids.len() - found.len(), "at {at}");
+        assert_eq!(study.counts().len(), ids.len() - found, "at {at}");
     }
 }
 
@@ -229,8 +232,8 @@ fn another_spelling_of_a_number_is_damage() {
     let spelled = [&bytes[..number], again.as_bytes(), &bytes[end..]].concat();
     assert_ne!(spelled, bytes);
     std::fs::write(folder.path().join(OUTCOMES_NAME), &spelled).unwrap();
-    let (found, lost) = OutcomeStore::look(folder.path()).unwrap();
-    assert!(found.is_empty() && lost.unwrap().to_string().contains("entry 1: "));
+    let entries = Entries::open(folder.path()).unwrap();
+    assert!(entries.cells().count() == 0 && entries.lost().unwrap().to_string().contains("entry 1: "));
     let study = Counting::default();
     assert_eq!(run_in(folder.path(), &study, &Silent).unwrap(), csv);
     assert_eq!(study.counts().len(), ids.len());

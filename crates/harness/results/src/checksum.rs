@@ -114,15 +114,32 @@ impl Checksums {
     /// [`ResultsError::Unlisted`] when its checksum is not known, [`ResultsError::Checksum`] when it is different, and
     /// [`ResultsError::Io`].
     pub fn bytes(&self, name: &str) -> Result<Vec<u8>, ResultsError> {
+        self.whole(name, read_bytes, |bytes| checksum(bytes))
+    }
+
+    /// Checks a file, which need not fit into the memory.
+    ///
+    /// # Errors
+    /// As [`bytes`](Self::bytes).
+    pub fn check(&self, name: &str) -> Result<(), ResultsError> {
+        self.whole(name, checksum_of, String::clone).map(drop)
+    }
+
+    fn whole<T>(
+        &self,
+        name: &str,
+        read: impl FnOnce(&Path) -> Result<T, ResultsError>,
+        sum: impl FnOnce(&T) -> String,
+    ) -> Result<T, ResultsError> {
         let (path, sums) = (self.folder.join(name), self.path());
         let Some(due) = self.by_name.get(name) else { return Err(ResultsError::Unlisted { sums, name: name.to_owned() }) };
-        let bytes = match read_bytes(&path) {
+        let found = match read(&path) {
             Err(ResultsError::Io { source, .. }) if source.kind() == io::ErrorKind::NotFound => {
                 return Err(ResultsError::Absent { sums, path });
             }
             other => other?,
         };
-        if checksum(&bytes) == *due { Ok(bytes) } else { Err(ResultsError::Checksum { path, sums }) }
+        if sum(&found) == *due { Ok(found) } else { Err(ResultsError::Checksum { path, sums }) }
     }
 
     fn path(&self) -> PathBuf {

@@ -1,5 +1,6 @@
 //! Files: rows as CSV, and whole runs.
 
+use std::collections::BTreeSet;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -122,8 +123,10 @@ pub fn write_run_with(folder: &Path, run: &RunInfo, records: &[Row], dictionary:
         let path = folder.join(name);
         atomic_write(&path, drawing::drawings_to_text(&run.drawings, &path)?.as_bytes())?;
     }
-    RunInfo { rows: records.len() as u64, ..run.clone() }.write(&folder.join(RUN_NAME))?;
-    Checksums::of(folder, &[&[CSV_NAME, SCHEMA_NAME, RUN_NAME], drawn, more].concat())?.write()
+    let names = [&[CSV_NAME, SCHEMA_NAME, RUN_NAME], drawn, more].concat();
+    let files = names.iter().map(|&name| name.to_owned()).collect();
+    RunInfo { rows: records.len() as u64, files, ..run.clone() }.write(&folder.join(RUN_NAME))?;
+    Checksums::of(folder, &names)?.write()
 }
 
 /// Reads a run's folder back.
@@ -144,9 +147,10 @@ pub fn read_run(folder: &Path) -> Result<(RunInfo, Vec<Row>), ResultsError> {
         run.drawings = drawing::parse_drawings(&text(DRAWINGS_NAME)?, &folder.join(DRAWINGS_NAME))?;
     }
     let records = parse_csv(&text(CSV_NAME)?, &path)?;
-    text(SCHEMA_NAME)?;
-    for name in sums.names() {
-        sums.bytes(name)?;
+    // `run.json` names them too: so no line of the list is missed.
+    let due = run.files.iter().map(String::as_str).chain([SCHEMA_NAME]).filter(|name| ![CSV_NAME, RUN_NAME, DRAWINGS_NAME].contains(name));
+    for name in due.chain(sums.names()).collect::<BTreeSet<&str>>() {
+        sums.check(name)?;
     }
     let found = records.len() as u64;
     if found != run.rows {

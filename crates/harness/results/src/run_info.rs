@@ -64,6 +64,9 @@ pub struct RunInfo {
     /// The drawings of robots, by name. They are in a file of their own, [`DRAWINGS_NAME`](crate::DRAWINGS_NAME); an older version had them here.
     #[serde(default, skip_serializing)]
     pub drawings: BTreeMap<String, crate::Drawing>,
+    /// The files of the run that have checksums. An older version did not say them, and had no checksum of outcomes and fingerprint.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub files: Vec<String>,
     /// The shards that the run was merged from; none if one process made it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shards: Vec<ShardInfo>,
@@ -330,6 +333,11 @@ impl RobotInfo {
 }
 
 impl RunInfo {
+    /// Whether a file of the run must have a checksum.
+    pub fn has_file(&self, name: &str) -> bool {
+        self.files.iter().any(|file| file == name)
+    }
+
     /// Reads a `run.json`; unknown fields, another format and a truncated file are errors.
     pub fn read(path: &Path) -> Result<Self, ResultsError> {
         Self::parse(&read_text(path)?, path)

@@ -1,7 +1,7 @@
 //! The catalogue of the failures of runs, as data: a line for each known deviation of each engine, and for each failure that is none.
 
 use super::finding::Fault;
-use featherbench_results::ResultsError;
+use featherbench_results::{CHECKSUMS_NAME, Checksums, ResultsError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -140,8 +140,13 @@ impl Catalogue {
         if !path.exists() {
             return Ok(None);
         }
-        let text = std::fs::read_to_string(&path).map_err(|source| ResultsError::Io { path: path.clone(), source })?;
-        serde_json::from_str(&text).map(Some).map_err(|source| ResultsError::Json { path, source })
+        // An older version wrote none.
+        let bytes = if folder.join(CHECKSUMS_NAME).is_file() {
+            Checksums::read(folder)?.bytes(CATALOGUE_NAME)?
+        } else {
+            std::fs::read(&path).map_err(|source| ResultsError::Io { path: path.clone(), source })?
+        };
+        serde_json::from_slice(&bytes).map(Some).map_err(|source| ResultsError::Json { path, source })
     }
 
     /// The catalogue with new lines in the place of those of the same names; other new lines come last.

@@ -1,7 +1,9 @@
 //! Reading a file of outcomes: where each entry is, and what it holds.
 
+use crate::shard::{Part, SHARD_NAME};
 use crate::{Cell, HarnessError, NoAnswer, OUTCOMES_NAME, Outcome};
 use featherbench_protocol::{Block, Message, MessageError};
+use featherbench_results::{CHECKSUMS_NAME, Checksums, RUN_NAME, RunInfo};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::fs::File;
@@ -58,6 +60,29 @@ impl Entries {
         let path = folder.join(OUTCOMES_NAME);
         let file = File::open(&path).map_err(|source| HarnessError::io(&path, source))?;
         Self::of(file, &path)
+    }
+
+    /// Opens the outcomes of a finished run or shard, or of one that goes on, as far as they are good to the last byte.
+    ///
+    /// # Errors
+    /// When the file cannot be read, lacks a part, or is damaged.
+    pub fn whole(folder: &Path) -> Result<Self, HarnessError> {
+        if folder.join(SHARD_NAME).is_file() {
+            let part = Part::open(folder).map_err(|error| HarnessError::Config { path: folder.to_owned(), message: error.to_string() })?;
+            return Ok(part.into_entries());
+        }
+        if folder.join(CHECKSUMS_NAME).is_file() {
+            let sums = Checksums::read(folder)?;
+            // An older version had no checksum of it; each entry has its own.
+            if sums.names().any(|name| name == OUTCOMES_NAME) || RunInfo::read(&folder.join(RUN_NAME))?.has_file(OUTCOMES_NAME) {
+                sums.check(OUTCOMES_NAME)?;
+            }
+        }
+        let entries = Self::open(folder)?;
+        match entries.lost() {
+            Some(lost) => Err(HarnessError::Config { path: lost.path.clone(), message: format!("entry {}: {}", lost.entry, lost.what) }),
+            None => Ok(entries),
+        }
     }
 
     /// Reads entry after entry up to the first that is incomplete or damaged.

@@ -4,16 +4,20 @@
 
 pub(crate) mod cell;
 pub(crate) mod entries;
+mod fingerprint;
 pub mod params;
 pub mod provenance;
 pub mod shard;
 pub(crate) mod store;
 pub(crate) mod study;
 
+pub use crate::run::fingerprint::{FINGERPRINT_NAME, shard_of};
+
+use crate::run::fingerprint::SHARD;
 use crate::run::study::{Asked, Context, Finished, Study, by_robot};
 use crate::shard::{Shard, hash_of};
-use crate::{Cell, HarnessError, Lost, NoAnswer, Outcome, OutcomeStore, Robot};
-use featherbench_results::{Dictionary, Row, RunInfo};
+use crate::{Cell, HarnessError, Lost, NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Robot};
+use featherbench_results::{CHECKSUMS_NAME, Dictionary, Row, RunInfo};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -43,18 +47,6 @@ impl Progress for Silent {
     fn cell(&self, _: &Cell) {}
     fn done(&self, _: &Cell, _: &Outcome) {}
     fn end(&self) {}
-}
-
-/// The file that holds what a resumed run must share with the first one.
-const FINGERPRINT_NAME: &str = "fingerprint.json";
-
-/// The fact in it that says which shard a folder is of.
-const SHARD: &str = "shard";
-
-/// The shard that was begun in a folder, if one was.
-pub fn shard_of(folder: &Path) -> Option<String> {
-    let text = std::fs::read_to_string(folder.join(FINGERPRINT_NAME)).ok()?;
-    serde_json::from_str::<BTreeMap<String, String>>(&text).ok()?.remove(SHARD)
 }
 
 /// How the folder of a run is opened.
@@ -131,10 +123,14 @@ impl Run {
         let mut now = provenance::fingerprint(&info);
         now.extend(more);
         if opening == Opening::Resume {
-            compare_fingerprints(folder, &path, &now)?;
+            fingerprint::compare(folder, &now)?;
         } else {
-            let text = serde_json::to_string_pretty(&now).map_err(|error| HarnessError::io(&path, error.into()))?;
-            featherbench_results::atomic_write(&path, text.as_bytes())?;
+            fingerprint::write(folder, &now)?;
+        }
+        // A run that goes on is unfinished until its files are written again.
+        match std::fs::remove_file(folder.join(CHECKSUMS_NAME)) {
+            Err(source) if source.kind() != std::io::ErrorKind::NotFound => return Err(io(source)),
+            _ => {}
         }
         let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         Ok(Self { folder: folder.to_owned(), info: RunInfo { run: id, ..info }, files: Vec::new() })
@@ -238,18 +234,9 @@ impl Run {
     /// # Errors
     /// When a file cannot be written, or a row holds a number that is not finite.
     pub fn write(&self, rows: &[Row], dictionary: &Dictionary) -> Result<(), HarnessError> {
-        Ok(featherbench_results::write_run_with(&self.folder, &self.info, rows, dictionary, &self.files)?)
+        let files = [&[FINGERPRINT_NAME, OUTCOMES_NAME], self.files.as_slice()].concat();
+        Ok(featherbench_results::write_run_with(&self.folder, &self.info, rows, dictionary, &files)?)
     }
-}
-
-/// Compares with the fingerprint of the run that goes on.
-fn compare_fingerprints(folder: &Path, path: &Path, now: &BTreeMap<String, String>) -> Result<(), HarnessError> {
-    let text = std::fs::read_to_string(path).map_err(|source| HarnessError::io(path, source))?;
-    let damaged = |error: serde_json::Error| HarnessError::Config { path: path.to_owned(), message: error.to_string() };
-    let then: BTreeMap<String, String> = serde_json::from_str(&text).map_err(damaged)?;
-    let Some(what) = then.keys().chain(now.keys()).find(|what| then.get(*what) != now.get(*what)) else { return Ok(()) };
-    let [then, now] = [&then, now].map(|side| side.get(what).map_or("none", String::as_str).to_owned());
-    Err(HarnessError::Mixed { path: folder.to_owned(), what: what.clone(), then, now })
 }
 
 /// The cells of a study that a filter accepts. If there are any, the cells that belong to no robot come with them.

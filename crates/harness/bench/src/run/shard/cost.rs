@@ -25,7 +25,7 @@ impl Costs {
     pub fn read(folders: &[PathBuf]) -> Result<Self, HarnessError> {
         let mut costs = BTreeMap::new();
         for folder in folders {
-            let entries = Entries::open(folder)?;
+            let entries = Entries::whole(folder)?;
             costs.extend(entries.cells().filter_map(|id| Some((id.to_owned(), entries.seconds(id)?))));
         }
         Ok(Self(costs))

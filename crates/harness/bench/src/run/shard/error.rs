@@ -15,7 +15,7 @@ pub enum ShardError {
         what: String,
     },
     /// The shard was begun and did not end.
-    #[error("{path}: shard {shard} is not finished; finish it by its own command with --resume", path = path.display())]
+    #[error("{path}: shard {shard} is not finished: it has no shard.json; finish it by its own command with --resume", path = path.display())]
     Unfinished {
         /// The folder.
         path: PathBuf,

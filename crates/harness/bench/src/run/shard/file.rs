@@ -1,17 +1,22 @@
 //! `shard.json`: what a finished shard is, and of what.
 
+use super::journal::{self, JOURNAL_NAME};
 use super::{Shard, ShardError};
-use crate::provenance;
-use featherbench_results::{Host, RunInfo, atomic_write, seal, unsealed};
+use crate::run::FINGERPRINT_NAME;
+use crate::{Entries, HarnessError, OUTCOMES_NAME, provenance};
+use featherbench_results::{Host, RunInfo, atomic_write, checksum_of, seal, unsealed};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Name of the file in a shard's folder. It is written last: a folder without it is not finished.
 pub const SHARD_NAME: &str = "shard.json";
 
+/// The other files of a finished shard, which no longer change.
+const FINISHED: [&str; 2] = [FINGERPRINT_NAME, OUTCOMES_NAME];
+
 /// The format of the file that this version writes and reads.
-pub const SHARD_FORMAT: u64 = 1;
+pub const SHARD_FORMAT: u64 = 2;
 
 /// What a finished shard is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,12 +38,14 @@ pub struct ShardFile {
     pub host: Host,
     /// Its cells in the order of the plan.
     pub cells: Vec<String>,
-    /// The checksum of its file of outcomes.
-    pub outcomes: String,
+    /// The checksums of its other files that are finished, by name.
+    pub files: BTreeMap<String, String>,
+    /// The checksum of the last line of its journal, which may grow: the folder's process may be started again. Empty if there is no journal.
+    pub journal: String,
 }
 
 impl ShardFile {
-    /// The file of a shard with these cells; the caller adds their time and the checksum of their outcomes.
+    /// The file of a shard with these cells; [`finish`](Self::finish) adds their time and the checksums of the shard's files.
     pub fn new(shard: Shard, info: &RunInfo, arguments: Vec<String>, cells: Vec<String>) -> Self {
         Self {
             format: SHARD_FORMAT,
@@ -49,7 +56,56 @@ impl ShardFile {
             seconds: 0.0,
             host: info.host.clone(),
             cells,
-            outcomes: String::new(),
+            files: BTreeMap::new(),
+            journal: String::new(),
+        }
+    }
+
+    /// Adds the time of the cells and the checksums of the files of a shard's folder, and writes the file into it, last.
+    ///
+    /// # Errors
+    /// When a file cannot be read or written, or the journal is damaged.
+    pub fn finish(mut self, folder: &Path) -> Result<Self, HarnessError> {
+        let entries = Entries::open(folder)?;
+        self.seconds = self.cells.iter().filter_map(|id| entries.seconds(id)).sum();
+        for name in FINISHED {
+            self.files.insert(name.to_owned(), checksum_of(&folder.join(name))?);
+        }
+        let path = folder.join(JOURNAL_NAME);
+        if path.is_file() {
+            let bytes = std::fs::read(&path).map_err(|source| HarnessError::io(&path, source))?;
+            let sums = journal::checked(&bytes).map_err(|line| HarnessError::Config {
+                path,
+                message: format!("line {line} is damaged; remove the file, and evaluate the shard again with --resume"),
+            })?;
+            self.journal = sums.last().cloned().unwrap_or_default();
+        }
+        self.write(folder)?;
+        Ok(self)
+    }
+
+    /// Checks every byte of the shard's other files.
+    pub(super) fn check(&self, folder: &Path) -> Result<(), ShardError> {
+        let damaged = |path: PathBuf, what: String| ShardError::Damaged { path, what };
+        for name in FINISHED {
+            let path = folder.join(name);
+            match (checksum_of(&path), self.files.get(name)) {
+                (Err(error), _) => return Err(damaged(path, error.to_string())),
+                (Ok(found), due) if due != Some(&found) => {
+                    return Err(damaged(path, format!("its checksum is not the one in {SHARD_NAME}")));
+                }
+                _ => {}
+            }
+        }
+        if self.journal.is_empty() {
+            return Ok(());
+        }
+        let path = folder.join(JOURNAL_NAME);
+        match std::fs::read(&path).map(|bytes| journal::checked(&bytes)) {
+            Err(error) => Err(damaged(path, error.to_string())),
+            Ok(Err(line)) => Err(damaged(path, format!("the checksum of line {line} is another one"))),
+            Ok(Ok(sums)) if !sums.contains(&self.journal) => Err(damaged(path, format!("it lacks the last line that {SHARD_NAME} knows"))),
+            Ok(Ok(_)) => Ok(()),
         }
     }
 

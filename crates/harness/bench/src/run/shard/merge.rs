@@ -28,8 +28,10 @@ impl Part {
             return foreign("there is no such folder");
         }
         if !path.is_file() {
-            if let Some(shard) = run::shard_of(folder) {
-                return Err(ShardError::Unfinished { path: folder.to_owned(), shard });
+            match run::shard_of(folder) {
+                Ok(Some(shard)) => return Err(ShardError::Unfinished { path: folder.to_owned(), shard }),
+                Ok(None) => {}
+                Err(error) => return foreign(&format!("it has no shard.json, and {error}")),
             }
             return foreign(if folder.join(featherbench_results::RUN_NAME).is_file() {
                 "it is a whole run"
@@ -40,10 +42,7 @@ impl Part {
         let damaged = |path: &Path, what: String| ShardError::Damaged { path: path.to_owned(), what };
         let bytes = std::fs::read(&path).map_err(|error| damaged(&path, error.to_string()))?;
         let file = ShardFile::parse(&bytes, &path)?;
-        let sum = featherbench_results::checksum_of(&outcomes).map_err(|error| damaged(&outcomes, error.to_string()))?;
-        if sum != file.outcomes {
-            return Err(damaged(&outcomes, format!("its checksum is not the one in {SHARD_NAME}")));
-        }
+        file.check(folder)?;
         let entries = Entries::open(folder).map_err(|error| damaged(&outcomes, error.to_string()))?;
         if let Some(lost) = entries.lost() {
             return Err(damaged(&outcomes, format!("entry {}: {}", lost.entry, lost.what)));
@@ -58,6 +57,11 @@ impl Part {
             return Err(damaged(&path, format!("'{}' is no shard", file.shard)));
         }
         Ok(Self { folder: folder.to_owned(), file, entries })
+    }
+
+    /// Its outcomes.
+    pub(crate) fn into_entries(self) -> Entries {
+        self.entries
     }
 }
 

@@ -7,6 +7,7 @@
 mod cost;
 mod error;
 mod file;
+pub mod journal;
 mod merge;
 
 pub use cost::{Costs, Estimate};
