@@ -42,7 +42,8 @@ def test_one_version_is_renewed_and_nothing_else(script: dict[str, Any], engines
 
 def test_the_table_says_what_is_newer(script: dict[str, Any]) -> None:
     """A newer version is marked."""
-    told = script["table"]({"a": "1", "b": "2"}, {"a": "1", "b": "3"})
+    told = script["table"]({"a": "1", "b": "2"}, {"a": "1", "b": "3"}, "3.11.7")
+    assert "for Python 3.11.7" in told
     assert "| a | 1 | 1 |" in told
     assert "| b | 2 | 3 (newer) |" in told
 
@@ -51,3 +52,41 @@ def test_a_warning_is_one_line(script: dict[str, Any], capsys: pytest.CaptureFix
     """Line ends and per cent signs are escaped as GitHub asks."""
     script["warn"]("50 %\nmore")
     assert capsys.readouterr().out == "::warning title=the newest engines::50 %25%0Amore\n"
+
+
+def program(folder: Path, name: str, text: str) -> Path:
+    """Write a program for the shell."""
+    written = folder / name
+    written.write_text(f"#!/bin/sh\n{text}\n")
+    written.chmod(0o755)
+    return written
+
+
+def test_the_newest_interpreter_that_starts_is_taken(script: dict[str, Any], tmp_path: Path) -> None:
+    """Versions are compared as numbers; what does not start, is no release or is no CPython is none."""
+    path = [
+        program(tmp_path, "python3", "echo 3 9 18 final cpython"),
+        program(tmp_path, "python3.10", "echo 3 10 4 final cpython"),
+        program(tmp_path, "python3.11", "echo 3 12 0 candidate cpython"),
+        program(tmp_path, "python3.12", "echo 3 12 9 final pypy"),
+        program(tmp_path, "python3.13", "exit 127"),
+        tmp_path / "python3.14",
+    ]
+    assert script["interpreter"](path) == ("3.10.4", path[1])
+    with pytest.raises(FileNotFoundError, match="no Python with venv"):
+        script["interpreter"](path[2:])
+
+
+def test_candidates_are_those_of_the_path_of_pyenv_and_of_uv(
+    script: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A program of another name is none."""
+    tools, versions = tmp_path / "tools", tmp_path / "versions/3.13.0/bin"
+    tools.mkdir()
+    versions.mkdir(parents=True)
+    wanted = {program(tools, "python3.12", "exit 1"), program(versions, "python3.13", "exit 1"), tmp_path / "managed"}
+    program(tools, "python3-config", "exit 1")
+    program(tools, "uv", f"""echo '[{{"path": "{tmp_path / "managed"}"}}]'""")
+    monkeypatch.setenv("PATH", str(tools))
+    monkeypatch.setenv("PYENV_ROOT", str(tmp_path))
+    assert set(script["candidates"]()) == wanted

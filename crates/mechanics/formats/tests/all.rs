@@ -14,3 +14,4 @@ mod uncertain;
 mod urdf_errors;
 mod urdf_export;
 mod urdf_import;
+mod urdf_versions;

@@ -104,7 +104,7 @@ fn bad_files_are_named() {
             "<mimic joint=\"other\"/>",
             &["f.urdf:16:5: joint 'shoulder' mimics joint 'other', which is not there", "independent mimics"],
         ),
-        ("<origin xyz=\"0 0 1\"/>", "<origin quat_xyzw=\"0 0 0 1\"/>", &["f.urdf:15:45: quat_xyzw of joint 'shoulder'"]),
+        ("<origin xyz=\"0 0 1\"/>", "<origin quat_xyzw=\"0 0 1\"/>", &["f.urdf:15:45: quat_xyzw=\"0 0 1\" of joint 'shoulder'"]),
         ("lower=\"-1\"", "lower=\"low\"", &["f.urdf:17:5: lower=\"low\" of joint 'shoulder' is not a number"]),
         ("lower=\"-1\"", "lower=\"2\"", &["f.urdf:14:3: body 'arm': joint 'shoulder' has lower limit 2 above upper limit 1"]),
         ("effort=\"10\"", "effort=\"-10\"", &["f.urdf:14:3", "effort of joint 'shoulder' is negative (-10)"]),

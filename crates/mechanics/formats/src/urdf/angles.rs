@@ -1,4 +1,4 @@
-//! Roll, pitch and yaw: the rotation of URDF angles, and the inverse.
+//! Roll, pitch and yaw: the rotation of URDF angles, and the inverse. The rotation of a quaternion.
 
 use featherbench_spatial::{DoubleDouble, Real, largest};
 use std::f64::consts::TAU;
@@ -19,6 +19,31 @@ pub(super) fn rotation(angles: [f64; 3]) -> [f64; 9] {
     ];
     // No negative zeros: the rotation of zero angles is the identity to the bit.
     entries.map(|entry| entry.to_f64() + 0.0)
+}
+
+/// The rotation of a quaternion (x, y, z, w) of any length, and its length; `None` of zeros. The doubles nearest to that rotation.
+pub(super) fn of_quaternion(given: [f64; 4]) -> Option<([f64; 9], f64)> {
+    // Scaled first, so that squares neither overflow nor underflow.
+    let size = largest(given);
+    if size == 0.0 {
+        return None;
+    }
+    let [x, y, z, w] = given.map(|x| DoubleDouble::from_f64(x) / DoubleDouble::from_f64(size));
+    let square = x * x + y * y + z * z + w * w;
+    let twice = DoubleDouble::from_f64(2.0) / square;
+    let one = DoubleDouble::from_f64(1.0);
+    let entries = [
+        one - twice * (y * y + z * z),
+        twice * (x * y - z * w),
+        twice * (x * z + y * w),
+        twice * (x * y + z * w),
+        one - twice * (x * x + z * z),
+        twice * (y * z - x * w),
+        twice * (x * z - y * w),
+        twice * (y * z + x * w),
+        one - twice * (x * x + y * y),
+    ];
+    Some((entries.map(|entry| entry.to_f64() + 0.0), size * square.sqrt().to_f64()))
 }
 
 /// Sine and cosine with 32 digits.

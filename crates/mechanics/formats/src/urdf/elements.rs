@@ -1,7 +1,7 @@
 //! The links and joints of a file, unchanged.
 
 use super::Options;
-use super::angles::rotation;
+use super::angles::{of_quaternion, rotation};
 use super::error::{At, NoteAt, UrdfProblem};
 use super::xml::Element;
 use featherbench_model::{JointDescription, JointType, Placement};
@@ -50,8 +50,8 @@ pub(super) struct Mimicry {
 }
 
 /// An axis that deviates from length one by more is normalised at once. One that deviates by less keeps its bits: the canonical form
-/// normalises it, with a warning.
-const AXIS_TOLERANCE: f64 = 1e-6;
+/// normalises it, with a warning. A quaternion that deviates by more is told to be normalised: files have six digits and more.
+const UNIT_TOLERANCE: f64 = 1e-6;
 
 impl Robot {
     pub fn read(document: &Document, options: &Options, notes: &mut Vec<NoteAt>) -> Result<Self, At> {
@@ -62,6 +62,10 @@ impl Robot {
         refuse_macros(root)?;
         if root.tag_name().name() != "robot" {
             return Err(UrdfProblem::NotARobot { found: root.tag_name().name().to_owned() }.at(root.range().start));
+        }
+        let version = root.attribute("version").unwrap_or(OLDEST);
+        if !VERSIONS.contains(&version) {
+            return Err(UrdfProblem::Version { version: version.to_owned() }.at(root.range().start));
         }
         let name = root.attribute("name").unwrap_or("robot").to_owned();
         let mut robot = Self { name, links: Vec::new(), joints: Vec::new() };
@@ -78,7 +82,7 @@ impl Robot {
             }
             let element = Element { node, owner: &format!("{what} '{name}'") };
             if what == "link" {
-                robot.links.push(Link::read(element, name)?);
+                robot.links.push(Link::read(element, name, notes)?);
             } else {
                 robot.joints.push(Joint::read(element, name, options, notes)?);
             }
@@ -92,6 +96,12 @@ impl Robot {
         Ok(robot)
     }
 }
+
+/// The version of a file that gives none.
+const OLDEST: &str = "1.0";
+
+/// The versions that are known.
+const VERSIONS: [&str; 3] = [OLDEST, "1.1", "1.2"];
 
 /// Root elements of files that are mistaken for URDF.
 const OTHER_ROOTS: [(&str, &str); 5] = [
@@ -156,22 +166,53 @@ fn check_mimic(joint: &Joint, joints: &[Joint]) -> Result<(), At> {
     Err(UrdfProblem::Mimic { joint: joint.described.name.clone(), of: of.clone(), why }.at(*place))
 }
 
-/// One note per kind of element that is not used.
+/// What is read: an element, its attributes and its children. All else is told.
+const READ: [(&str, &[&str], &[&str]); 13] = [
+    ("robot", &["name", "version"], &["link", "joint"]),
+    ("link", &["name"], &["inertial"]),
+    ("joint", &["name", "type"], &["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"]),
+    ("inertial", &[], &["origin", "mass", "inertia"]),
+    ("origin", &["xyz", "rpy", QUATERNION], &[]),
+    ("mass", &["value"], &[]),
+    ("inertia", &["ixx", "ixy", "ixz", "iyy", "iyz", "izz"], &[]),
+    ("parent", &["link"], &[]),
+    ("child", &["link"], &[]),
+    ("axis", &["xyz"], &[]),
+    ("limit", &["lower", "upper", "velocity", "effort"], &[]),
+    ("dynamics", &["damping", "friction"], &[]),
+    ("mimic", &["joint", "offset", "multiplier"], &[]),
+];
+
+/// One note per kind of element and of attribute that is not read.
 fn note_what_is_not_read(root: Node, notes: &mut Vec<NoteAt>) {
     let mut ignored: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     let mut tally = |path: String, node: Node| ignored.entry(path).or_insert((0, node.range().start)).0 += 1;
-    for node in root.children().filter(Node::is_element) {
-        let used: &[&str] = match node.tag_name().name() {
-            "link" => &["inertial"],
-            "joint" => &["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"],
-            other => {
-                tally(format!("<{other}>"), node);
-                continue;
+    let mut waiting = vec![root];
+    while let Some(node) = waiting.pop() {
+        let element = node.tag_name().name();
+        let Some((_, attributes, children)) = READ.into_iter().find(|(name, ..)| *name == element) else { continue };
+        for attribute in node.attributes() {
+            let prefix = attribute.namespace().and_then(|namespace| node.lookup_prefix(namespace));
+            let name = prefix.map_or_else(|| attribute.name().to_owned(), |prefix| format!("{prefix}:{}", attribute.name()));
+            if name == QUATERNION && element == "origin" && !knows_quaternions(node) {
+                tally(format!("{name} in <{element}> (it needs <robot version=\"1.1\">)"), node);
+            } else if !attributes.contains(&name.as_str()) {
+                tally(format!("{name} in <{element}>"), node);
             }
-        };
-        for child in node.children().filter(|child| child.is_element() && !used.contains(&child.tag_name().name())) {
-            tally(format!("<{}> in <{}>", child.tag_name().name(), node.tag_name().name()), child);
         }
+        let first = waiting.len();
+        for child in node.children().filter(Node::is_element) {
+            let name = child.tag_name().name();
+            if children.contains(&name) {
+                waiting.push(child);
+            } else if node == root {
+                tally(format!("<{name}>"), child);
+            } else {
+                tally(format!("<{name}> in <{element}>"), child);
+            }
+        }
+        // The last that waits is the next one: the file's order.
+        waiting[first..].reverse();
     }
     for (what, (count, offset)) in ignored {
         let times = if count == 1 { String::new() } else { format!(" ({count} times)") };
@@ -180,7 +221,7 @@ fn note_what_is_not_read(root: Node, notes: &mut Vec<NoteAt>) {
 }
 
 impl Link {
-    fn read(element: Element, name: &str) -> Result<Self, At> {
+    fn read(element: Element, name: &str, notes: &mut Vec<NoteAt>) -> Result<Self, At> {
         let mut link =
             Self { offset: element.offset(), name: name.to_owned(), has_inertial: false, mass: 0.0, com: [0.0; 3], inertia: [0.0; 6] };
         let Some(inertial) = element.optional("inertial")? else {
@@ -191,7 +232,7 @@ impl Link {
         if link.mass < 0.0 {
             return Err(inertial.required("mass")?.problem(UrdfProblem::NegativeMass { link: link.name, mass: link.mass }));
         }
-        let origin = origin(inertial)?;
+        let origin = origin(inertial, notes)?;
         link.com = origin.translation;
         if origin.rotation != Placement::default().rotation {
             link.inertia = Sym3::from_array(link.inertia).rotate(Mat3::from_array(origin.rotation)).to_array();
@@ -216,7 +257,7 @@ impl Joint {
         let offset = element.offset();
         let word = element.attribute("type")?;
         let (parent, child) = (element.required("parent")?.attribute("link")?, element.required("child")?.attribute("link")?);
-        let placement = origin(element)?;
+        let placement = origin(element, notes)?;
         let mut mimics = None;
         if let Some(mimic) = element.optional("mimic")? {
             let of = mimic.attribute("joint")?;
@@ -308,19 +349,35 @@ fn unit(given: [f64; 3]) -> Option<([f64; 3], f64)> {
     let scaled = Vec3::from_array(given.map(|x| DoubleDouble::from_f64(x) / DoubleDouble::from_f64(size)));
     let norm = scaled.norm();
     let length = size * norm.to_f64();
-    let unit = if (length - 1.0).abs() <= AXIS_TOLERANCE { given } else { scaled.to_array().map(|x| (x / norm).to_f64()) };
+    let unit = if (length - 1.0).abs() <= UNIT_TOLERANCE { given } else { scaled.to_array().map(|x| (x / norm).to_f64()) };
     Some((unit, length))
 }
 
 /// The placement of an `<origin>`; the identity where there is none.
-pub(super) fn origin(element: Element) -> Result<Placement, At> {
+pub(super) fn origin(element: Element, notes: &mut Vec<NoteAt>) -> Result<Placement, At> {
     let Some(origin) = element.optional("origin")? else {
         return Ok(Placement::default());
     };
-    if origin.node.has_attribute("quat_xyzw") {
-        return Err(origin.problem(UrdfProblem::Quaternion { owner: element.owner.to_owned() }));
-    }
     let translation = origin.optional_vector("xyz")?.unwrap_or_default();
-    let rotation = rotation(origin.optional_vector("rpy")?.unwrap_or_default());
+    let angles = origin.optional_vector("rpy")?;
+    let Some(given) = origin.optional_quaternion(QUATERNION)?.filter(|_| knows_quaternions(origin.node)) else {
+        return Ok(Placement { rotation: rotation(angles.unwrap_or_default()), translation });
+    };
+    let owner = || element.owner.to_owned();
+    if angles.is_some() {
+        return Err(origin.problem(UrdfProblem::TwoOrientations { owner: owner() }));
+    }
+    let (rotation, length) = of_quaternion(given).ok_or_else(|| origin.problem(UrdfProblem::ZeroQuaternion { owner: owner() }))?;
+    if (length - 1.0).abs() > UNIT_TOLERANCE {
+        notes.push(NoteAt::new(origin.offset(), format!("the quaternion of {} has length {length}; it is normalised", element.owner)));
+    }
     Ok(Placement { rotation, translation })
+}
+
+/// The attribute of an orientation since version 1.1. An older file's is ignored: so the specification demands.
+const QUATERNION: &str = "quat_xyzw";
+
+/// Whether an element's file has a version with quaternions.
+fn knows_quaternions(node: Node) -> bool {
+    node.document().root_element().attribute("version").is_some_and(|version| version != OLDEST)
 }

@@ -90,9 +90,21 @@ pub enum UrdfProblem {
         /// Its value.
         value: String,
     },
-    /// A quaternion, of URDF 1.1.
-    #[error("quat_xyzw of {owner} is not read by this version; write the rotation as rpy")]
-    Quaternion {
+    /// The version is none that is known.
+    #[error("the version '{version}' of <robot> is not known; the known ones are 1.0, 1.1 and 1.2, and a file without one has 1.0")]
+    Version {
+        /// As the file has it.
+        version: String,
+    },
+    /// A quaternion of zeros.
+    #[error("quat_xyzw of {owner} is 0 0 0 0, which is no orientation; write quat_xyzw=\"0 0 0 1\" for none")]
+    ZeroQuaternion {
+        /// The link or joint.
+        owner: String,
+    },
+    /// Two orientations in one `<origin>`.
+    #[error("<origin> of {owner} has both rpy and quat_xyzw; keep one")]
+    TwoOrientations {
         /// The link or joint.
         owner: String,
     },

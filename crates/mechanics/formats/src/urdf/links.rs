@@ -62,7 +62,7 @@ pub(super) fn mimics(document: &Document) -> Vec<Mimic> {
 fn link(element: Element, density: f64) -> Result<FileLink, At> {
     let name = element.attribute("name")?;
     let inertial = element.optional("inertial")?.map(|inertial| -> Result<FileInertial, At> {
-        let place = origin(inertial)?;
+        let place = origin(inertial, &mut Vec::new())?;
         let (mass, inertia) = Link::mass_and_tensor(inertial)?;
         Ok(FileInertial { mass, com: place.translation, rotation: place.rotation, inertia })
     });
@@ -76,7 +76,7 @@ fn solids(link: Element, density: f64) -> Result<Option<FileInertial>, At> {
         let collision = Element { node, ..link };
         let shape = collision.optional("geometry")?.and_then(|geometry| geometry.node.children().find(Node::is_element));
         let Some((volume, moments)) = shape.map(|node| of_shape(Element { node, ..link })).transpose()?.flatten() else { return Ok(None) };
-        let Placement { rotation, translation } = origin(collision)?;
+        let Placement { rotation, translation } = origin(collision, &mut Vec::new())?;
         let place = Transform::new(featherbench_spatial::Mat3::from_array(rotation), Vec3::from_array(translation));
         let mass = density * volume;
         let [x, y, z] = moments.map(|moment| mass * moment);

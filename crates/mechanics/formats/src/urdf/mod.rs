@@ -10,6 +10,9 @@
 //! - The root link is fixed to the world ([`Base::Fixed`]) or has a free joint named `root_joint` ([`Base::Floating`]).
 //!   A root without inertia, such as a link `world`, may carry the robot on a `floating` joint. Then that joint is the floating base.
 //! - Siblings keep the order of their joints in the file. (Parsers built on urdfdom sort them by joint name.)
+//! - Versions 1.0 (of a file that gives none), 1.1 and 1.2 are known. Another one is an error, as in the specification.
+//! - `quat_xyzw` (from version 1.1) may have any length but zero; a note tells a length other than one. Beside `rpy` it is an error. A file
+//!   of version 1.0 does not have it: it is noted, and not read.
 //! - `rpy` is R = Rz(yaw)·Ry(pitch)·Rx(roll); an axis is normalised, with a note when that changes more than its last digit.
 //! - Fixed joints are merged, each leaving a frame with the link's name.
 //! - A `floating` joint becomes free, a `planar` one planar in the plane normal to its axis, `continuous` revolute without position limits.
@@ -18,8 +21,9 @@
 //! - A joint with `<mimic>` is a joint of the tree, and a loop ties it to the joint that it follows: q = offset + multiplier·q_leader.
 //!   A mimic that cannot be tied is an error that names the joints. With [`Options::independent_mimics`] there is a note instead of the
 //!   loop, and the joint is independent, as in engines by default.
-//! - Noted and not imported: visual and collision geometry, `safety_controller`, `calibration`, and every element of `<robot>` that is
-//!   neither link nor joint.
+//! - Noted and not imported: visual and collision geometry, `safety_controller`, `calibration`, every element of `<robot>` that is
+//!   neither link nor joint, and every attribute that is not named here, such as `acceleration`, `deceleration` and `jerk` of `<limit>`
+//!   (version 1.2): the equations of motion have no such limits.
 //!
 //! Limits: 10 MB, a million XML nodes, no document type declaration (hence no entities to expand). Nesting uses no stack.
 

@@ -103,6 +103,11 @@ impl<'a> Element<'a> {
         self.node.attribute(name).map(|value| self.parse(name, value, "three numbers", false)).transpose()
     }
 
+    /// Four numbers that may be absent.
+    pub fn optional_quaternion(&self, name: &'static str) -> Result<Option<[f64; 4]>, At> {
+        self.node.attribute(name).map(|value| self.parse(name, value, "four numbers", false)).transpose()
+    }
+
     fn parse<const N: usize>(&self, attribute: &'static str, value: &str, expected: &'static str, infinite: bool) -> Result<[f64; N], At> {
         let (owner, text) = (|| self.owner.to_owned(), || value.to_owned());
         let numbers = value.split_ascii_whitespace().map(str::parse).collect::<Result<Vec<f64>, _>>().ok();
