@@ -22,10 +22,13 @@ pub fn scaled_error(robot: &Robot, quantity: Quantity, at: &Magnitudes, referenc
         Measure::JointForces => entries(reference, value, &at.joint_force),
         Measure::JointForcesWrench => entries(reference, value, &at.joint_force_wrench),
         Measure::BiasForces => entries(reference, value, &at.bias_force),
-        Measure::Matrix => mass_matrix(nv, reference, value),
-        Measure::SparseMatrix => mass_matrix_sparse(robot, reference, value),
-        Measure::Factors => mass_matrix_sparse(robot, &multiplied(robot, reference), &multiplied(robot, value)),
-        Measure::Products => mass_matrix_probe(nv, &robot.probe(), reference, value),
+        Measure::Matrix => {
+            let least = if quantity == Quantity::MassMatrix { &*at.least_root } else { &[] };
+            mass_matrix(nv, least, reference, value)
+        }
+        Measure::SparseMatrix => mass_matrix_sparse(robot, at, reference, value),
+        Measure::Factors => mass_matrix_sparse(robot, at, &multiplied(robot, reference), &multiplied(robot, value)),
+        Measure::Products => mass_matrix_probe(nv, &at.least_root, &robot.probe(), reference, value),
         Measure::Itself => entries(reference, value, reference),
         Measure::PotentialEnergy => {
             let gravity = robot.model.gravity.norm();
@@ -98,17 +101,22 @@ fn body_jacobian(robot: &Robot, at: &Magnitudes, reference: &[f64], value: &[f64
     entries(reference, value, &[angular.repeat(3), linear.repeat(3)].concat())
 }
 
+/// √M_ii, and at least the one of [`Magnitudes::least_root`]. A matrix whose entries are other things has no least ones.
+fn roots(diagonal: impl Iterator<Item = f64>, least: &[f64]) -> Vec<f64> {
+    diagonal.enumerate().map(|(i, x)| worst(x.sqrt(), least.get(i).copied().unwrap_or(0.0))).collect()
+}
+
 /// max |ΔM_ij| / √(M_ii·M_jj).
-fn mass_matrix(n: usize, reference: &[f64], value: &[f64]) -> f64 {
-    let root: Vec<f64> = (0..n).map(|i| reference[i * n + i].sqrt()).collect();
+fn mass_matrix(n: usize, least: &[f64], reference: &[f64], value: &[f64]) -> f64 {
+    let root = roots((0..n).map(|i| reference[i * n + i]), least);
     let magnitude: Vec<f64> = (0..n * n).map(|entry| root[entry / n] * root[entry % n]).collect();
     entries(reference, value, &magnitude)
 }
 
 /// The same over the entries of the tree-sparse layout.
-fn mass_matrix_sparse(robot: &Robot, reference: &[f64], value: &[f64]) -> f64 {
+fn mass_matrix_sparse(robot: &Robot, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
     let topology = &robot.model.topology;
-    let root: Vec<f64> = (0..topology.nv()).map(|i| reference[topology.row(i).end - 1].sqrt()).collect();
+    let root = roots((0..topology.nv()).map(|i| reference[topology.row(i).end - 1]), &at.least_root);
     let pairs = (0..topology.nv()).flat_map(|i| topology.row_dofs(i).iter().map(move |&j| (i, j)));
     let magnitude: Vec<f64> = pairs.map(|(i, j)| root[i] * root[j]).collect();
     entries(reference, value, &magnitude)
@@ -132,8 +140,8 @@ fn multiplied(robot: &Robot, factors: &[f64]) -> Vec<f64> {
 }
 
 /// Products against Σ_j √(M_ii·M_jj)|x_j|, the diagonal and the last row as entries of M.
-fn mass_matrix_probe(n: usize, probe: &[f64], reference: &[f64], value: &[f64]) -> f64 {
-    let root: Vec<f64> = reference[4 * n..5 * n].iter().map(|diagonal| diagonal.sqrt()).collect();
+fn mass_matrix_probe(n: usize, least: &[f64], probe: &[f64], reference: &[f64], value: &[f64]) -> f64 {
+    let root = roots(reference[4 * n..5 * n].iter().copied(), least);
     let last = root.last().copied().unwrap_or(0.0);
     let mut magnitude = Vec::with_capacity(6 * n);
     for x in probe.chunks_exact(n) {
@@ -151,7 +159,8 @@ fn total_mass(robot: &Robot) -> f64 {
 
 /// Mass-weighted mean of the lengths of the paths to the bodies' centres of mass.
 fn reach_of_mass(robot: &Robot, at: &Magnitudes) -> f64 {
-    let moments = robot.model.inertias.iter().zip(&at.reach).map(|(inertia, reach)| inertia.mass * reach + inertia.first_moment.norm());
+    let bodies = robot.model.inertias.iter().zip(&at.reach).zip(&at.lever);
+    let moments = bodies.map(|((inertia, reach), lever)| inertia.mass * reach + lever);
     moments.sum::<f64>() / total_mass(robot)
 }
 
@@ -159,7 +168,7 @@ fn reach_of_mass(robot: &Robot, at: &Magnitudes) -> f64 {
 fn momentum(robot: &Robot, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
     let (mut angular, mut linear) = (0.0, 0.0);
     for (i, inertia) in robot.model.inertias.iter().enumerate() {
-        let (omega, v, lever) = (at.angular_velocity[i], at.linear_velocity[i], inertia.first_moment.norm());
+        let (omega, v, lever) = (at.angular_velocity[i], at.linear_velocity[i], at.lever[i]);
         let rotational = inertia.rotational.xx + inertia.rotational.yy + inertia.rotational.zz;
         let share = inertia.mass * v + lever * omega;
         linear += share;
@@ -194,7 +203,7 @@ mod tests {
         let m = [1e6, 0.0, 0.0, 1e-6];
         let mut wrong = m;
         wrong[3] *= 1.0 + 1e-10;
-        let error = mass_matrix(2, &m, &wrong);
+        let error = mass_matrix(2, &[], &m, &wrong);
         assert!((error - 1e-10).abs() < 1e-15, "{error}: relative to its own diagonal, rounding of 1 + 1e-10 aside");
     }
 
