@@ -53,6 +53,7 @@ pub fn scaled_error(robot: &Robot, quantity: Quantity, at: &Magnitudes, referenc
             })
         }
         Measure::Jacobian => body_jacobian(robot, at, reference, value),
+        Measure::JacobianProducts => entries(reference, value, &jacobian_products(robot, at)),
         Measure::Readback => readback(reference, value),
         Measure::Derivative { .. } => derivative::error(robot, quantity, at, reference, value),
         Measure::Regressor => derivative::regressor_error(robot, at, reference, value),
@@ -86,19 +87,52 @@ fn per_body<const N: usize>(robot: &Robot, reference: &[f64], value: &[f64], sca
 
 /// Per dof at unit rate: a rotation moves the body by at most its reach, a slide by one.
 fn body_jacobian(robot: &Robot, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
-    let model = &robot.model;
-    let reach = at.reach[model.described[robot.deepest_body()]];
-    let (slide, turn) = ((0.0, 1.0), (1.0, 0.0));
-    let dofs = model.topology.joints().iter().zip(&model.subspaces).flat_map(|(joint, subspace)| match joint.kind {
-        JointKind::Free => vec![slide, slide, slide, turn, turn, turn],
-        JointKind::Spherical => vec![turn; 3],
-        _ => vec![(subspace.ang.norm(), subspace.lin.norm())],
-    });
+    let reach = at.reach[robot.model.described[robot.deepest_body()]];
+    let dofs = (0..robot.model.topology.bodies()).flat_map(|joint| unit_rates(robot, joint));
     // The angular entries of a slide's column should be zero. They are measured against the rotation that moves the reach as far as the
     // slide.
     let scales = dofs.map(|(turn, slide)| (if turn > 0.0 || reach == 0.0 { turn } else { slide / reach }, turn * reach + slide));
     let (angular, linear): (Vec<f64>, Vec<f64>) = scales.unzip();
     entries(reference, value, &[angular.repeat(3), linear.repeat(3)].concat())
+}
+
+/// Per dof of a joint, how fast it turns and slides at unit rate.
+fn unit_rates(robot: &Robot, joint: usize) -> Vec<(f64, f64)> {
+    let (slide, turn) = ((0.0, 1.0), (1.0, 0.0));
+    let subspace = &robot.model.subspaces[joint];
+    match robot.model.topology.joints()[joint].kind {
+        JointKind::Free => vec![slide, slide, slide, turn, turn, turn],
+        JointKind::Spherical => vec![turn; 3],
+        _ => vec![(subspace.ang.norm(), subspace.lin.norm())],
+    }
+}
+
+/// For each body and vector x of the probe, the sums over the dofs on the body's path: of |x_j| times the entries' magnitudes in
+/// [`body_jacobian`]. The whole body counts, as for velocities.
+fn jacobian_products(robot: &Robot, at: &Magnitudes) -> Vec<f64> {
+    let (model, probe) = (&robot.model, robot.probe());
+    let joints = model.topology.joints();
+    let (nv, each) = (model.topology.nv(), Quantity::BodyJacobians.size(robot) / model.described.len());
+    let mut magnitude = vec![0.0; Quantity::BodyJacobians.size(robot)];
+    for (x, place) in probe.chunks_exact(nv).zip((0..each).step_by(6)) {
+        // Along each path: turns, slides without a turn, and all slides.
+        let mut sums: Vec<[f64; 3]> = Vec::with_capacity(joints.len());
+        for (i, joint) in joints.iter().enumerate() {
+            let mut sum = joint.parent.map_or([0.0; 3], |parent| sums[parent]);
+            for ((turn, slide), x) in unit_rates(robot, i).into_iter().zip(&x[joint.v..]) {
+                sum[0] += turn * x.abs();
+                sum[1] += if turn > 0.0 { 0.0 } else { slide * x.abs() };
+                sum[2] += slide * x.abs();
+            }
+            sums.push(sum);
+        }
+        for (out, &body) in magnitude.chunks_exact_mut(each).zip(&model.described) {
+            let ([turns, pure, slides], reach) = (sums[body], at.reach[body] + at.size[body]);
+            let across = if reach > 0.0 { pure / reach } else { 0.0 };
+            out[place..place + 6].copy_from_slice(&halves(turns + across, turns * reach + slides));
+        }
+    }
+    magnitude
 }
 
 /// √M_ii, and at least the one of [`Magnitudes::least_root`]. A matrix whose entries are other things has no least ones.
