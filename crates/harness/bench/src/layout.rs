@@ -7,7 +7,6 @@ use crate::{Quantity, Robot};
 pub use featherbench_dynamics::PARAMETERS;
 use featherbench_dynamics::{BodyMotion, DimensionError, TreeSparse};
 use featherbench_results::{Asked, Extents};
-use featherbench_robots::StateBatch;
 use featherbench_spatial::{Motion, Real};
 
 /// Robots with more degrees of freedom than this are asked for [`Quantity::MassMatrixProbe`] and not for the whole matrix.
@@ -26,7 +25,6 @@ impl Robot {
         let count = self.states.count();
         match quantity.asked() {
             Asked::All => count,
-            Asked::Head => count.min(StateBatch::HEAD),
             Asked::One => count.min(1),
         }
     }
@@ -70,6 +68,18 @@ pub fn bodies<T: Real>(quantity: Quantity, motion: impl Fn(usize) -> Option<Body
             }
             Quantity::BodyVelocity => out.copy_from_slice(&velocity.to_array()),
             _ => out.copy_from_slice(&acceleration.to_array()),
+        }
+    }
+}
+
+/// Products of a body's Jacobian with the first vectors of the probe: what [`Quantity::BodyJacobians`] has of a body. `entry` gives the
+/// Jacobian's entries by row and dof.
+///
+/// One wrong column shows in both products. No lie that is drawn without the vectors is hidden by them.
+pub fn jacobian_products(entry: impl Fn(usize, usize) -> f64, probe: &[f64], nv: usize, out: &mut [f64]) {
+    for (x, out) in probe.chunks_exact(nv).zip(out.chunks_exact_mut(6)) {
+        for (row, out) in out.iter_mut().enumerate() {
+            *out = x.iter().enumerate().map(|(dof, x)| entry(row, dof) * x).sum();
         }
     }
 }

@@ -4,6 +4,7 @@
 mod by_hand;
 mod classes;
 mod configuration;
+mod degenerate;
 mod derivatives;
 mod external;
 mod gates;
@@ -11,5 +12,7 @@ mod measures;
 mod normalised;
 mod properties;
 mod resume;
+#[path = "../../../mechanics/robots/tests/share.rs"]
+mod share;
 mod statistics;
 mod truth;

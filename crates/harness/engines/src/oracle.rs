@@ -137,6 +137,8 @@ impl Engine for Oracle {
         // The read-back comes with every robot.
         match quantity {
             Quantity::Readback => vec!["build".into()],
+            // The products are made here, of the Jacobians of the bodies one by one.
+            Quantity::BodyJacobians => self.methods(Quantity::BodyJacobian),
             _ => self.hello.methods.get(quantity.name()).cloned().unwrap_or_default(),
         }
     }

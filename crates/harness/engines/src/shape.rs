@@ -69,8 +69,11 @@ mod tests {
             assert_eq!(due.iter().product::<usize>(), 5 * quantity.size(&robot), "{row}");
             seen.push(quantity);
         }
-        // The read-back is among the requests; only our engine has single precision and second derivatives.
-        let ours = |quantity: &Quantity| *quantity == Quantity::ForwardDynamicsSingle || Quantity::SECOND_DERIVATIVES.contains(quantity);
+        // The read-back is among the requests; only our engine has single precision and second derivatives. The products of all bodies'
+        // Jacobians are made of `body_jacobian`.
+        let ours = |quantity: &Quantity| {
+            matches!(quantity, Quantity::ForwardDynamicsSingle | Quantity::BodyJacobians) || Quantity::SECOND_DERIVATIVES.contains(quantity)
+        };
         let asked = Quantity::ALL.into_iter().filter(|quantity| *quantity != Quantity::Readback && !ours(quantity));
         seen.sort_unstable();
         let mut due: Vec<Quantity> = asked.collect();

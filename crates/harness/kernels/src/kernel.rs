@@ -115,6 +115,7 @@ pub(crate) fn kernel<'a>(robot: &'a Robot, quantity: Quantity, method: Method, s
         (Q::Momentum, M::KinematicsPacked) => momentum(model, states),
         (Q::BodyPlacement | Q::BodyVelocity | Q::BodyAcceleration, M::KinematicsPacked) => kinematics(model, states, quantity),
         (Q::BodyJacobian, M::KinematicsPacked) => jacobian(model, states, model.described[robot.deepest_body()]),
+        (Q::BodyJacobians, M::KinematicsPacked) => jacobians(robot, states),
         (Q::InverseDynamicsDq | Q::InverseDynamicsDv, M::Analytic) => derivatives::inverse_dynamics(robot, states, quantity),
         (Q::ForwardDynamicsDq | Q::ForwardDynamicsDv, M::Analytic) => derivatives::forward_dynamics(robot, states, quantity),
         (Q::CoriolisMatrix, M::Analytic) => derivatives::coriolis(robot, states),
@@ -388,6 +389,22 @@ fn jacobian<'a>(model: &'a Model<f64>, states: &'a StateBatch, body: usize) -> K
     let evaluate = move |jacobian: &mut PackedJacobian, k| Ok(jacobian.run(&packed, states.q(k), body).map(|_| ())?);
     let read = |jacobian: &PackedJacobian, out: &mut [f64]| layout::jacobian(jacobian.columns(), out);
     kept(work, evaluate, read)
+}
+
+/// Products of each body's Jacobian with vectors of the probe.
+fn jacobians<'a>(robot: &'a Robot, states: &'a StateBatch) -> Kernel<'a> {
+    let (model, probe) = (&robot.model, robot.probe());
+    let packed = PackedModel::new(model);
+    let mut work = PackedJacobian::new(&packed);
+    let size = Quantity::BodyJacobians.size(robot);
+    let each = size / model.described.len();
+    written(size, move |k, out| {
+        for (out, &body) in out.chunks_exact_mut(each).zip(&model.described) {
+            let columns = work.run(&packed, states.q(k), body)?;
+            layout::jacobian_products(|row, dof| columns[dof].to_array()[row], &probe, states.nv, out);
+        }
+        Ok(())
+    })
 }
 
 fn constant<'a>(values: Vec<f64>) -> Kernel<'a> {

@@ -67,7 +67,8 @@ pub(crate) fn methods(quantity: Quantity) -> &'static [Method] {
         | Quantity::BodyPlacement
         | Quantity::BodyVelocity
         | Quantity::BodyAcceleration
-        | Quantity::BodyJacobian => &[KinematicsPacked],
+        | Quantity::BodyJacobian
+        | Quantity::BodyJacobians => &[KinematicsPacked],
         Quantity::Readback => &[Build],
         Quantity::StoredEntries => &[Topology],
         Quantity::FactorEntries => &[Ltdl],

@@ -33,8 +33,6 @@ pub struct Extents {
 pub enum Asked {
     /// All, where the worst one counts.
     All,
-    /// The head of the batch, which has one state of each kind: large kinematic quantities and external wrenches.
-    Head,
     /// One, where it does not depend on the state.
     One,
 }
@@ -72,6 +70,8 @@ pub enum Measure {
     Accelerations,
     /// What a dof at unit rate moves the deepest body by.
     Jacobian,
+    /// What the dofs on its path at the rates of the probe move a body by.
+    JacobianProducts,
     /// The size of each physical parameter of a body.
     Readback,
     /// The largest entry in the units of row and column.
@@ -105,6 +105,9 @@ struct Entry {
     measure: Measure,
     error: &'static str,
 }
+
+/// How many vectors each body's Jacobian is multiplied with.
+const PROBED: usize = 2;
 
 const ONE: &[Extent] = &[Number(1)];
 const VECTOR: &[Extent] = &[Dofs];
@@ -174,7 +177,7 @@ quantities! {
     InverseDynamics("id", "inverse dynamics", VECTOR, Measure::JointForces)
         "per degree of freedom, |Δτᵢ| over the sum of the magnitudes of the terms added to form τᵢ";
     "inverse dynamics under external wrenches"
-    InverseDynamicsWrench("id_wrench", "ID, ext. wrench", VECTOR, Measure::JointForcesWrench, asked: Head)
+    InverseDynamicsWrench("id_wrench", "ID, ext. wrench", VECTOR, Measure::JointForcesWrench)
         "as inverse dynamics, with external wrenches on the bodies among the terms";
     "forward dynamics a = M⁻¹(τ − h)"
     ForwardDynamics("fd", "forward dynamics", VECTOR, Measure::Largest)
@@ -192,17 +195,20 @@ quantities! {
     Momentum("momentum", "momentum", &[Number(6)], Measure::Momentum)
         "linear part over Σ(m|v| + |mc||ω|), angular part over Σ(tr Ī|ω| + |mc||v| + path · linear share), with the magnitudes of v and ω added up along the path";
     "placement of each body in the world"
-    BodyPlacement("body_placement", "body placements", &[Bodies, Number(12)], Measure::Placements, asked: Head)
+    BodyPlacement("body_placement", "body placements", &[Bodies, Number(12)], Measure::Placements)
         "entries of the rotation over one, of the position over the length of the path from the world's origin";
     "velocity of each body's origin, world axes"
-    BodyVelocity("body_velocity", "body velocities", BODY_VECTORS, Measure::Velocities, asked: Head)
+    BodyVelocity("body_velocity", "body velocities", BODY_VECTORS, Measure::Velocities)
         "angular part over the sum of the joints' angular velocities along the path, linear part over that of the linear ones plus angular · the body's size";
     "classical acceleration of each body's origin, world axes"
-    BodyAcceleration("body_acceleration", "body accelerations", BODY_VECTORS, Measure::Accelerations, asked: Head)
+    BodyAcceleration("body_acceleration", "body accelerations", BODY_VECTORS, Measure::Accelerations)
         "as body velocities, with the terms of accelerations; gravity and the swing of the body about its origin are among the linear ones";
     "Jacobian of the deepest body, world axes"
-    BodyJacobian("body_jacobian", "body Jacobian", &[Number(6), Dofs], Measure::Jacobian, asked: Head)
+    BodyJacobian("body_jacobian", "body Jacobian", &[Number(6), Dofs], Measure::Jacobian)
         "of the deepest body, column by column: a turn at unit rate carries the body along by no more than the length of its path, a slide by one";
+    "Jacobian of each body times two vectors, world axes"
+    BodyJacobians("body_jacobians", "all bodies' Jacobians", &[Bodies, Number(PROBED), Number(6)], Measure::JacobianProducts)
+        "J x of every body for two dense vectors x: each entry over the sum of what the dofs on the body's path at the rates |xⱼ| carry it along";
     "inertias and placements that the engine holds after building the robot"
     Readback("readback", "model read back", &[Bodies, Number(22)], Measure::Readback, asked: One)
         "what the engine itself holds after loading, against the description: masses and lengths over themselves, rotations over one, inertias over their trace about the body's origin. It separates an error of the model from one of the algorithm";

@@ -1,6 +1,7 @@
 //! The tests of these studies as one program: so shared modules are compiled once.
 
 mod accounted_readings;
+mod anywhere;
 mod bad_oracle;
 mod conditioning;
 mod convicted;

@@ -51,7 +51,7 @@ fn goes_on(fault: &str, step: u64, reason: &str) {
     let (errors, rest): (Vec<Row>, Vec<Row>) = records.into_iter().partition(|row| row.engine == "broken");
     assert_eq!(rest, alone);
     let quantities: Vec<&str> = errors.iter().map(|row| row.quantity.as_str()).collect();
-    assert_eq!(quantities, ["readback", "id", "id", "fd", "body_jacobian"], "one row for each question");
+    assert_eq!(quantities, ["readback", "id", "id", "fd", "body_jacobian", "body_jacobians"], "one row for each question");
     for row in &errors {
         assert_eq!((row.verdict, row.value), (Verdict::Error, None));
         assert!(row.reason.contains(reason), "{}", row.reason);

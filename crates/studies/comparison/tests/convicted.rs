@@ -102,7 +102,7 @@ fn halves_of_the_free_joint_swapped() {
 /// The free joint's τ in world axes.
 #[test]
 fn world_axes_for_body_axes() {
-    let twist = |Answer { robot, quantity, state, values }: Answer| {
+    let twist = |Answer { robot, quantity, state, values, .. }: Answer| {
         if quantity == Quantity::InverseDynamics {
             let x = robot.model.joint_transform(0, robot.states.q(state));
             let world = |v: &[f64]| (x.rotation * featherbench_spatial::Vec3::new(v[0], v[1], v[2])).to_array();
@@ -176,7 +176,7 @@ fn momentum_about_another_point() {
 /// Spatial instead of classical acceleration: without ω × v.
 #[test]
 fn spatial_acceleration_for_classical() {
-    let twist = |Answer { robot, quantity, state, values }: Answer| {
+    let twist = |Answer { robot, quantity, state, values, .. }: Answer| {
         if quantity == Quantity::BodyAcceleration {
             let states = &robot.states;
             let motion =
@@ -240,7 +240,7 @@ fn rotations_the_other_way() {
 }
 
 /// Every quantity that depends on the configuration of a moving robot.
-const EVERYTHING: [&str; 13] = [
+const EVERYTHING: [&str; 14] = [
     "id",
     "id_wrench",
     "bias",
@@ -254,6 +254,7 @@ const EVERYTHING: [&str; 13] = [
     "body_velocity",
     "body_acceleration",
     "body_jacobian",
+    "body_jacobians",
 ];
 
 /// Quaternions interpreted as w, x, y, z.

@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// One state of each case: errors that the gates can find must be found with these.
@@ -55,6 +56,8 @@ pub struct Answer<'a> {
     pub robot: &'a Robot,
     /// What is asked.
     pub quantity: Quantity,
+    /// The method by which it is asked.
+    pub method: &'a str,
     /// The state of the question.
     pub state: usize,
     /// The answer.
@@ -66,6 +69,8 @@ pub const OVERHEAD: Duration = Duration::from_nanos(700);
 
 /// A change of an engine's answers.
 pub type Twist = fn(Answer);
+/// The same with what it depends on.
+type Lie = Arc<dyn Fn(Answer) + Send + Sync>;
 
 /// An engine named `double` that answers with our kernels, but on another robot than it reports, at other states, or with changed answers.
 ///
@@ -75,7 +80,7 @@ pub struct Double {
     featherbench: Featherbench,
     held: Robot,
     states: Option<StateBatch>,
-    twist: Twist,
+    twist: Lie,
     refuses: bool,
     estimates: bool,
     /// Whether it offers the usual method alone, except of forward dynamics.
@@ -91,7 +96,7 @@ impl Double {
             featherbench: Featherbench::new(),
             held: robot.clone(),
             states: None,
-            twist: |_| (),
+            twist: Arc::new(|_: Answer| ()),
             refuses: false,
             estimates: false,
             usual: false,
@@ -107,8 +112,8 @@ impl Double {
     }
 
     /// One that changes its answers.
-    pub fn twisting(robot: &Robot, twist: Twist) -> Self {
-        Self { twist, ..Self::of(robot) }
+    pub fn twisting(robot: &Robot, twist: impl Fn(Answer) + Send + Sync + 'static) -> Self {
+        Self { twist: Arc::new(twist), ..Self::of(robot) }
     }
 
     /// One that misinterprets the states.
@@ -183,8 +188,9 @@ impl Engine for Double {
             inner,
             robot,
             quantity,
+            method: method.to_owned(),
             count: states.count(),
-            twist: self.twist,
+            twist: Arc::clone(&self.twist),
             overhead: self.estimates.then_some(OVERHEAD),
             values: Vec::new(),
         }))
@@ -195,8 +201,9 @@ struct Twisted<'a> {
     inner: Box<dyn Evaluation + 'a>,
     robot: &'a Robot,
     quantity: Quantity,
+    method: String,
     count: usize,
-    twist: Twist,
+    twist: Lie,
     overhead: Option<Duration>,
     values: Vec<f64>,
 }
@@ -207,7 +214,8 @@ impl Evaluation for Twisted<'_> {
         self.values.clear();
         for (state, values) in range.zip(self.inner.read().chunks_exact(self.quantity.size(self.robot))) {
             let mut values = values.to_vec();
-            (self.twist)(Answer { robot: self.robot, quantity: self.quantity, state, values: &mut values });
+            let (robot, quantity, method) = (self.robot, self.quantity, &*self.method);
+            (self.twist)(Answer { robot, quantity, method, state, values: &mut values });
             self.values.extend(values);
         }
         Ok(())

@@ -19,7 +19,8 @@ pub struct ForwardScale<'a> {
     /// κ of D^-½ M D^-½ with D = diag M.
     pub condition: f64,
     /// The largest forward error (in the kinetic-energy norm) of two answers that both have a componentwise backward error of one:
-    /// `2·‖D^-½ w‖₂ / (√λ_min·‖a‖_M)` with w as in [`ForwardScale::backward_error`] and λ_min that of D^-½ M D^-½.
+    /// `2·‖D^-½ w‖₂ / (√λ_min·‖a‖_M)` with w as in [`ForwardScale::backward_error`] and λ_min that of D^-½ M D^-½. The denominator is that of
+    /// [`ForwardScale::forward_error`].
     ///
     /// For M Δa = r with |r| ≤ η·w gives ‖Δa‖_M = ‖r‖_{M⁻¹} ≤ ‖D^-½ r‖₂/√λ_min. The factor two is for the reference, which has a backward
     /// error as well.
@@ -65,8 +66,7 @@ impl<'a> ForwardScale<'a> {
         }
         let (least, largest) = scale.extreme_eigenvalues(&factors);
         scale.condition = largest / least;
-        let weighted = scale.terms(&a).iter().zip(scale.mass.diagonal()).map(|(w, d)| w * w / d).sum::<f64>().sqrt();
-        scale.amplification = 2.0 * weighted / (least.sqrt() * scale.energy_norm(&a));
+        scale.amplification = ratio(2.0 * scale.weighted(&a), least.sqrt() * scale.size(&a));
         scale
     }
 
@@ -99,13 +99,15 @@ impl<'a> ForwardScale<'a> {
             return f64::NAN;
         }
         let distance = |from: &[f64]| from.iter().zip(states.tau(self.state)).map(|(x, tau)| (x - tau).powi(2)).sum::<f64>().sqrt();
-        ratio(distance(&taken), distance(&bias))
+        let loads = self.loads.iter().map(|x| x * x).sum::<f64>().sqrt();
+        ratio(distance(&taken), worst(distance(&bias), f64::EPSILON * loads))
     }
 
-    /// ‖a − reference‖_M / ‖reference‖_M.
+    /// ‖a − reference‖_M / ‖reference‖_M, where the denominator is at least ε·‖D^-½ w‖₂. In equilibrium the reference is zero, or rounding of
+    /// that size.
     pub fn forward_error(&self, reference: &[f64], a: &[f64]) -> f64 {
         let difference: Vec<f64> = a.iter().zip(reference).map(|(a, r)| a - r).collect();
-        ratio(self.energy_norm(&difference), self.energy_norm(reference))
+        ratio(self.energy_norm(&difference), self.size(reference))
     }
 
     /// The denominators w of the backward error of an answer.
@@ -123,6 +125,16 @@ impl<'a> ForwardScale<'a> {
             }
         }
         terms
+    }
+
+    /// ‖D^-½ w‖₂ of an answer.
+    fn weighted(&self, a: &[f64]) -> f64 {
+        self.terms(a).iter().zip(self.mass.diagonal()).map(|(w, d)| w * w / d).sum::<f64>().sqrt()
+    }
+
+    /// ‖a‖_M, and at least what rounding of the forces makes of it.
+    fn size(&self, a: &[f64]) -> f64 {
+        worst(self.energy_norm(a), f64::EPSILON * self.weighted(a))
     }
 
     /// √(aᵀMa).

@@ -4,9 +4,13 @@
 //! every sum by the sum of lengths. Lengths do not depend on the axes: so the magnitudes belong to the robot and its state, not to an
 //! algorithm. In products, angular velocities keep their true length. Their sums hardly cancel, and squared sums of lengths would make the
 //! measure too weak.
+//!
+//! The first moment of a body is a sum over its mass, too, and it cancels if the body is balanced. So it has a least length
+//! ([`Magnitudes::lever`]).
 
 use super::ratio::worst;
 use crate::Robot;
+use featherbench_model::JointKind;
 use featherbench_spatial::{Motion, Vec3};
 
 /// The magnitudes at one state. Per body they refer to the body's origin.
@@ -16,8 +20,14 @@ pub struct Magnitudes {
     pub state: usize,
     /// Length of the path from the world's origin to each body, m.
     pub reach: Vec<f64>,
-    /// Size of each body, m: the distance from its origin to its centre of mass or to the farthest joint on it, whichever is larger.
+    /// Size of each body, m: the distance from its origin to its centre of mass or to the farthest joint on it, whichever is larger, or its
+    /// least length if that is larger.
     pub size: Vec<f64>,
+    /// First moment of each body, kg m: its length, and at least its mass times its least length. That is an eighth of its radius of
+    /// gyration about its origin or 2⁻¹⁰ of the largest body's size, whichever is larger.
+    pub lever: Vec<f64>,
+    /// Per dof, the least √M_ii: that of the body's mass at 2⁻¹⁰ of its radius of gyration or of the largest body's size.
+    pub least_root: Vec<f64>,
     /// Angular velocity, rad/s.
     pub angular_velocity: Vec<f64>,
     /// Linear velocity, m/s.
@@ -56,12 +66,15 @@ impl Magnitudes {
         let still = Recursion::outward(robot, k, &zero);
         let moving = Recursion::outward(robot, k, states.a(k));
         let none = vec![0.0; states.wrench(k).len()];
+        let Lengths { size, lever, least_root } = Lengths::of(robot);
         Self {
             state: k,
-            joint_force: moving.inward(robot, states.a(k), &none),
-            joint_force_wrench: moving.inward(robot, states.a(k), states.wrench(k)),
-            bias_force: still.inward(robot, &zero, &none),
-            size: sizes(robot),
+            joint_force: moving.inward(robot, &lever, states.a(k), &none),
+            joint_force_wrench: moving.inward(robot, &lever, states.a(k), states.wrench(k)),
+            bias_force: still.inward(robot, &lever, &zero, &none),
+            size,
+            lever,
+            least_root,
             reach: moving.reach,
             angular_velocity: moving.angular_velocity,
             linear_velocity: moving.linear_velocity,
@@ -71,16 +84,57 @@ impl Magnitudes {
     }
 }
 
-fn sizes(robot: &Robot) -> Vec<f64> {
-    let model = &robot.model;
-    let center = |i: usize| if model.inertias[i].mass > 0.0 { model.inertias[i].com().norm() } else { 0.0 };
-    let mut sizes: Vec<f64> = (0..model.topology.bodies()).map(center).collect();
-    for (joint, placement) in model.topology.joints().iter().zip(&model.placements) {
-        if let Some(parent) = joint.parent {
-            sizes[parent] = worst(sizes[parent], placement.translation.norm());
+/// The share of a body's radius of gyration that its first moment counts at least. The first moment of a body that is balanced in the file is
+/// rounding of what was summed, some 5 ε of mass times that radius. Gates allow 45 ε, so an eighth leaves it rounding.
+const OF_GYRATION: f64 = 0.125;
+/// The share for a point mass on its axis, which has no such radius, and for M. An engine rounds by the distance between bodies there, by a
+/// few ε. Where import differs by that, a comparison allows 4500 ε.
+const OF_ROBOT: f64 = 1.0 / 1024.0;
+
+/// The lengths that belong to the robot and not to its state.
+struct Lengths {
+    size: Vec<f64>,
+    lever: Vec<f64>,
+    least_root: Vec<f64>,
+}
+
+impl Lengths {
+    fn of(robot: &Robot) -> Self {
+        let model = &robot.model;
+        let joints = model.topology.joints();
+        let center = |i: usize| if model.inertias[i].mass > 0.0 { model.inertias[i].com().norm() } else { 0.0 };
+        let mut size: Vec<f64> = (0..joints.len()).map(center).collect();
+        let mut mount = 0.0;
+        for (joint, placement) in joints.iter().zip(&model.placements) {
+            match joint.parent {
+                Some(parent) => size[parent] = worst(size[parent], placement.translation.norm()),
+                None => mount = worst(mount, placement.translation.norm()),
+            }
         }
+        let largest = size.iter().copied().fold(0.0, worst);
+        // Where no body has a size, the bases' distance from the world's origin is the only length.
+        let largest = if largest > 0.0 { largest } else { mount };
+        let gyration = |i: usize| {
+            let inertia = &model.inertias[i];
+            let half_trace = 0.5 * (inertia.rotational.xx + inertia.rotational.yy + inertia.rotational.zz);
+            if inertia.mass > 0.0 { (half_trace / inertia.mass).max(0.0).sqrt() } else { 0.0 }
+        };
+        let (mut lever, mut least_root) = (Vec::with_capacity(joints.len()), Vec::with_capacity(model.topology.nv()));
+        for (i, joint) in joints.iter().enumerate() {
+            let (mass, gyration) = (model.inertias[i].mass, gyration(i));
+            let least = worst(OF_GYRATION * gyration, OF_ROBOT * largest);
+            size[i] = worst(size[i], least);
+            lever.push(worst(model.inertias[i].first_moment.norm(), mass * least));
+            let root = mass.max(0.0).sqrt() * OF_ROBOT;
+            let (turn, slide) = (root * worst(gyration, largest), root);
+            match joint.kind {
+                JointKind::Free => least_root.extend([slide, slide, slide, turn, turn, turn]),
+                JointKind::Spherical => least_root.extend([turn; 3]),
+                _ => least_root.push(worst(model.subspaces[i].ang.norm() * turn, model.subspaces[i].lin.norm() * slide)),
+            }
+        }
+        Self { size, lever, least_root }
     }
-    sizes
 }
 
 struct Recursion {
@@ -138,7 +192,7 @@ impl Recursion {
     }
 
     /// From the leaves inwards: loads, and the part of them at each joint.
-    fn inward(&self, robot: &Robot, a: &[f64], wrench: &[f64]) -> Vec<f64> {
+    fn inward(&self, robot: &Robot, lever: &[f64], a: &[f64], wrench: &[f64]) -> Vec<f64> {
         let model = &robot.model;
         let gravity = model.gravity.norm();
         let mut loads: Vec<Load> = (0..model.topology.bodies())
@@ -150,7 +204,7 @@ impl Recursion {
                 // The spatial acceleration differs from the classical one by ω × v. An algorithm may use either, so this term is in the
                 // sum.
                 let falling = self.linear_acceleration[i] + gravity + self.spin[i] * self.linear_velocity[i];
-                let lever = inertia.first_moment.norm();
+                let lever = lever[i];
                 Load { moment: rotational * turning + lever * falling, force: inertia.mass * falling + lever * turning }
             })
             .collect();
@@ -163,11 +217,11 @@ impl Recursion {
             let Load { moment, force } = loads[i];
             let subspace = &model.subspaces[i];
             match joint.kind {
-                featherbench_model::JointKind::Free => {
+                JointKind::Free => {
                     tau[joint.v..joint.v + 3].fill(force);
                     tau[joint.v + 3..joint.v + 6].fill(moment);
                 }
-                featherbench_model::JointKind::Spherical => tau[joint.v..joint.v + 3].fill(moment),
+                JointKind::Spherical => tau[joint.v..joint.v + 3].fill(moment),
                 _ => tau[joint.v] = subspace.ang.norm() * moment + subspace.lin.norm() * force,
             }
             if let Some(parent) = joint.parent {

@@ -22,10 +22,13 @@ pub fn scaled_error(robot: &Robot, quantity: Quantity, at: &Magnitudes, referenc
         Measure::JointForces => entries(reference, value, &at.joint_force),
         Measure::JointForcesWrench => entries(reference, value, &at.joint_force_wrench),
         Measure::BiasForces => entries(reference, value, &at.bias_force),
-        Measure::Matrix => mass_matrix(nv, reference, value),
-        Measure::SparseMatrix => mass_matrix_sparse(robot, reference, value),
-        Measure::Factors => mass_matrix_sparse(robot, &multiplied(robot, reference), &multiplied(robot, value)),
-        Measure::Products => mass_matrix_probe(nv, &robot.probe(), reference, value),
+        Measure::Matrix => {
+            let least = if quantity == Quantity::MassMatrix { &*at.least_root } else { &[] };
+            mass_matrix(nv, least, reference, value)
+        }
+        Measure::SparseMatrix => mass_matrix_sparse(robot, at, reference, value),
+        Measure::Factors => mass_matrix_sparse(robot, at, &multiplied(robot, reference), &multiplied(robot, value)),
+        Measure::Products => mass_matrix_probe(nv, &at.least_root, &robot.probe(), reference, value),
         Measure::Itself => entries(reference, value, reference),
         Measure::PotentialEnergy => {
             let gravity = robot.model.gravity.norm();
@@ -50,6 +53,7 @@ pub fn scaled_error(robot: &Robot, quantity: Quantity, at: &Magnitudes, referenc
             })
         }
         Measure::Jacobian => body_jacobian(robot, at, reference, value),
+        Measure::JacobianProducts => entries(reference, value, &jacobian_products(robot, at)),
         Measure::Readback => readback(reference, value),
         Measure::Derivative { .. } => derivative::error(robot, quantity, at, reference, value),
         Measure::Regressor => derivative::regressor_error(robot, at, reference, value),
@@ -83,14 +87,8 @@ fn per_body<const N: usize>(robot: &Robot, reference: &[f64], value: &[f64], sca
 
 /// Per dof at unit rate: a rotation moves the body by at most its reach, a slide by one.
 fn body_jacobian(robot: &Robot, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
-    let model = &robot.model;
-    let reach = at.reach[model.described[robot.deepest_body()]];
-    let (slide, turn) = ((0.0, 1.0), (1.0, 0.0));
-    let dofs = model.topology.joints().iter().zip(&model.subspaces).flat_map(|(joint, subspace)| match joint.kind {
-        JointKind::Free => vec![slide, slide, slide, turn, turn, turn],
-        JointKind::Spherical => vec![turn; 3],
-        _ => vec![(subspace.ang.norm(), subspace.lin.norm())],
-    });
+    let reach = at.reach[robot.model.described[robot.deepest_body()]];
+    let dofs = (0..robot.model.topology.bodies()).flat_map(|joint| unit_rates(robot, joint));
     // The angular entries of a slide's column should be zero. They are measured against the rotation that moves the reach as far as the
     // slide.
     let scales = dofs.map(|(turn, slide)| (if turn > 0.0 || reach == 0.0 { turn } else { slide / reach }, turn * reach + slide));
@@ -98,17 +96,61 @@ fn body_jacobian(robot: &Robot, at: &Magnitudes, reference: &[f64], value: &[f64
     entries(reference, value, &[angular.repeat(3), linear.repeat(3)].concat())
 }
 
+/// Per dof of a joint, how fast it turns and slides at unit rate.
+fn unit_rates(robot: &Robot, joint: usize) -> Vec<(f64, f64)> {
+    let (slide, turn) = ((0.0, 1.0), (1.0, 0.0));
+    let subspace = &robot.model.subspaces[joint];
+    match robot.model.topology.joints()[joint].kind {
+        JointKind::Free => vec![slide, slide, slide, turn, turn, turn],
+        JointKind::Spherical => vec![turn; 3],
+        _ => vec![(subspace.ang.norm(), subspace.lin.norm())],
+    }
+}
+
+/// For each body and vector x of the probe, the sums over the dofs on the body's path: of |x_j| times the entries' magnitudes in
+/// [`body_jacobian`]. The whole body counts, as for velocities.
+fn jacobian_products(robot: &Robot, at: &Magnitudes) -> Vec<f64> {
+    let (model, probe) = (&robot.model, robot.probe());
+    let joints = model.topology.joints();
+    let (nv, each) = (model.topology.nv(), Quantity::BodyJacobians.size(robot) / model.described.len());
+    let mut magnitude = vec![0.0; Quantity::BodyJacobians.size(robot)];
+    for (x, place) in probe.chunks_exact(nv).zip((0..each).step_by(6)) {
+        // Along each path: turns, slides without a turn, and all slides.
+        let mut sums: Vec<[f64; 3]> = Vec::with_capacity(joints.len());
+        for (i, joint) in joints.iter().enumerate() {
+            let mut sum = joint.parent.map_or([0.0; 3], |parent| sums[parent]);
+            for ((turn, slide), x) in unit_rates(robot, i).into_iter().zip(&x[joint.v..]) {
+                sum[0] += turn * x.abs();
+                sum[1] += if turn > 0.0 { 0.0 } else { slide * x.abs() };
+                sum[2] += slide * x.abs();
+            }
+            sums.push(sum);
+        }
+        for (out, &body) in magnitude.chunks_exact_mut(each).zip(&model.described) {
+            let ([turns, pure, slides], reach) = (sums[body], at.reach[body] + at.size[body]);
+            let across = if reach > 0.0 { pure / reach } else { 0.0 };
+            out[place..place + 6].copy_from_slice(&halves(turns + across, turns * reach + slides));
+        }
+    }
+    magnitude
+}
+
+/// √M_ii, and at least the one of [`Magnitudes::least_root`]. A matrix whose entries are other things has no least ones.
+fn roots(diagonal: impl Iterator<Item = f64>, least: &[f64]) -> Vec<f64> {
+    diagonal.enumerate().map(|(i, x)| worst(x.sqrt(), least.get(i).copied().unwrap_or(0.0))).collect()
+}
+
 /// max |ΔM_ij| / √(M_ii·M_jj).
-fn mass_matrix(n: usize, reference: &[f64], value: &[f64]) -> f64 {
-    let root: Vec<f64> = (0..n).map(|i| reference[i * n + i].sqrt()).collect();
+fn mass_matrix(n: usize, least: &[f64], reference: &[f64], value: &[f64]) -> f64 {
+    let root = roots((0..n).map(|i| reference[i * n + i]), least);
     let magnitude: Vec<f64> = (0..n * n).map(|entry| root[entry / n] * root[entry % n]).collect();
     entries(reference, value, &magnitude)
 }
 
 /// The same over the entries of the tree-sparse layout.
-fn mass_matrix_sparse(robot: &Robot, reference: &[f64], value: &[f64]) -> f64 {
+fn mass_matrix_sparse(robot: &Robot, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
     let topology = &robot.model.topology;
-    let root: Vec<f64> = (0..topology.nv()).map(|i| reference[topology.row(i).end - 1].sqrt()).collect();
+    let root = roots((0..topology.nv()).map(|i| reference[topology.row(i).end - 1]), &at.least_root);
     let pairs = (0..topology.nv()).flat_map(|i| topology.row_dofs(i).iter().map(move |&j| (i, j)));
     let magnitude: Vec<f64> = pairs.map(|(i, j)| root[i] * root[j]).collect();
     entries(reference, value, &magnitude)
@@ -132,8 +174,8 @@ fn multiplied(robot: &Robot, factors: &[f64]) -> Vec<f64> {
 }
 
 /// Products against Σ_j √(M_ii·M_jj)|x_j|, the diagonal and the last row as entries of M.
-fn mass_matrix_probe(n: usize, probe: &[f64], reference: &[f64], value: &[f64]) -> f64 {
-    let root: Vec<f64> = reference[4 * n..5 * n].iter().map(|diagonal| diagonal.sqrt()).collect();
+fn mass_matrix_probe(n: usize, least: &[f64], probe: &[f64], reference: &[f64], value: &[f64]) -> f64 {
+    let root = roots(reference[4 * n..5 * n].iter().copied(), least);
     let last = root.last().copied().unwrap_or(0.0);
     let mut magnitude = Vec::with_capacity(6 * n);
     for x in probe.chunks_exact(n) {
@@ -151,7 +193,8 @@ fn total_mass(robot: &Robot) -> f64 {
 
 /// Mass-weighted mean of the lengths of the paths to the bodies' centres of mass.
 fn reach_of_mass(robot: &Robot, at: &Magnitudes) -> f64 {
-    let moments = robot.model.inertias.iter().zip(&at.reach).map(|(inertia, reach)| inertia.mass * reach + inertia.first_moment.norm());
+    let bodies = robot.model.inertias.iter().zip(&at.reach).zip(&at.lever);
+    let moments = bodies.map(|((inertia, reach), lever)| inertia.mass * reach + lever);
     moments.sum::<f64>() / total_mass(robot)
 }
 
@@ -159,7 +202,7 @@ fn reach_of_mass(robot: &Robot, at: &Magnitudes) -> f64 {
 fn momentum(robot: &Robot, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
     let (mut angular, mut linear) = (0.0, 0.0);
     for (i, inertia) in robot.model.inertias.iter().enumerate() {
-        let (omega, v, lever) = (at.angular_velocity[i], at.linear_velocity[i], inertia.first_moment.norm());
+        let (omega, v, lever) = (at.angular_velocity[i], at.linear_velocity[i], at.lever[i]);
         let rotational = inertia.rotational.xx + inertia.rotational.yy + inertia.rotational.zz;
         let share = inertia.mass * v + lever * omega;
         linear += share;
@@ -194,7 +237,7 @@ mod tests {
         let m = [1e6, 0.0, 0.0, 1e-6];
         let mut wrong = m;
         wrong[3] *= 1.0 + 1e-10;
-        let error = mass_matrix(2, &m, &wrong);
+        let error = mass_matrix(2, &[], &m, &wrong);
         assert!((error - 1e-10).abs() < 1e-15, "{error}: relative to its own diagonal, rounding of 1 + 1e-10 aside");
     }
 

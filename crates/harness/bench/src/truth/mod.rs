@@ -104,6 +104,17 @@ impl TruthModel {
                 let body = model.described[robot.deepest_body()];
                 layout::jacobian(Jacobian::new(topology).run(model, &q, body).ok()?, &mut out);
             }
+            Quantity::BodyJacobians => {
+                // J x is the velocity at v = x.
+                let (mut kinematics, nv) = (Kinematics::new(topology), states.nv);
+                let each = out.len() / model.described.len();
+                for (x, place) in robot.probe().chunks_exact(nv).zip((0..each).step_by(6)) {
+                    kinematics.run(model, &q, &wide(x), &a).ok()?;
+                    for (out, &body) in out.chunks_exact_mut(each).zip(&model.described) {
+                        out[place..place + 6].copy_from_slice(&kinematics.body(body)?.velocity.to_array());
+                    }
+                }
+            }
             _ => return None,
         }
         Some(out.iter().map(|x| x.to_f64()).collect())

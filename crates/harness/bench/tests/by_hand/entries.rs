@@ -94,6 +94,10 @@ fn every_entry_of_two_screws_has_its_magnitude() {
     assert!(root[0] < 5.0 * root[1]);
     let of_row = |of: f64| [50.0, 80.0, 80.0, 80.0, 90.0, 90.0, 90.0, 90.0, 90.0, 90.0].map(|x| 1e9 * x / root[0] * of);
     let of_regressor = [of_row(root[0]), of_row(root[0]), of_row(root[1]), of_row(root[1])].concat();
+    let rates: Vec<f64> = robot.probe()[..4].iter().map(|x| x.abs()).collect();
+    let first = rates.chunks(2).flat_map(|x| body(x[0], 9.0 * x[0]));
+    let second = rates.chunks(2).flat_map(|x| body(x[0] + x[1], 10.0 * x[0] + 9.75 * x[1]));
+    let jacobian_products: Vec<f64> = first.chain(second).collect();
     let cases = [
         of(Quantity::InverseDynamics, &at.joint_force),
         of(Quantity::InverseDynamicsWrench, &at.joint_force_wrench),
@@ -113,6 +117,8 @@ fn every_entry_of_two_screws_has_its_magnitude() {
         of(Quantity::BodyAcceleration, &[body(11.0, 70.5), body(25.0, 109.5 + spin / 2.0)].concat()),
         // A screw rotates by one, and moves by its reach of 9 and its pitch.
         of(Quantity::BodyJacobian, &[[1.0; 6], [9.5, 9.25, 9.5, 9.25, 9.5, 9.25]].concat()),
+        // The same with the size of the body, times the rates of the probe along its path: of 8.5 m and 9.5 m.
+        of(Quantity::BodyJacobians, &jacobian_products),
         scaled(Quantity::Readback, &robot.readback(), &[held(2.0, 0.75, 3.75 + 2.25, 5.0), held(4.0, 0.5, 3.0 + 2.0, 3.0)].concat()),
         of(Quantity::StoredEntries, &[1.0]),
         scaled(Quantity::ForwardDynamics, &[-8.0, 2.0], &[8.0; 2]),

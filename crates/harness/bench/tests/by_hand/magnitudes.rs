@@ -66,9 +66,12 @@ fn free_and_spherical_joints_have_these_magnitudes() {
     // 3·2 + 1, and 7 + (9.5 + 9)·0.5.
     assert_close("linear acceleration", &at.linear_acceleration, &[7.0, 16.25]);
 
+    // The first body is balanced: its first moment counts an eighth of mass times radius of gyration, 3·√(½·5/3)/8.
+    let lever = 7.5_f64.sqrt() / 8.0;
+    assert_close("first moment", &at.lever, &[lever, 3.0]);
     // Turning 18.5 and 43.5 + 25 = 68.5; falling 7 + 5 + 3·2 = 18 and 16.25 + 5 + 5·3.5 = 38.75.
     let (tip_moment, tip_force) = (51.0_f64.sqrt() * 68.5 + 3.0 * 38.75, 2.0 * 38.75 + 3.0 * 68.5);
-    let (force, moment) = (3.0 * 18.0 + tip_force, 3.0 * 18.5 + tip_moment + 0.5 * tip_force);
+    let (force, moment) = (3.0 * 18.0 + lever * 18.5 + tip_force, 3.0 * 18.5 + lever * 18.0 + tip_moment + 0.5 * tip_force);
     // Forces before moments, as the dofs of a free joint are; the armature of 0.2 is multiplied by |a| = 6.
     let expected = [[force; 3], [moment; 3], [tip_moment, tip_moment + 0.2 * 6.0, tip_moment]].concat();
     assert_close("joint force", &at.joint_force, &expected);
@@ -76,7 +79,8 @@ fn free_and_spherical_joints_have_these_magnitudes() {
 
     // Without accelerations α is 9 and 9 + 28, a is 6 and 6 + (9 + 9)·0.5.
     let (tip_moment, tip_force) = (51.0_f64.sqrt() * (37.0 + 25.0) + 3.0 * (15.0 + 5.0 + 17.5), 2.0 * 37.5 + 3.0 * 62.0);
-    let (force, moment) = (3.0 * (6.0 + 5.0 + 6.0) + tip_force, 3.0 * (9.0 + 9.0) + tip_moment + 0.5 * tip_force);
+    let own = (3.0 * 17.0 + lever * 18.0, 3.0 * 18.0 + lever * 17.0);
+    let (force, moment) = (own.0 + tip_force, own.1 + tip_moment + 0.5 * tip_force);
     assert_close("bias force", &at.bias_force, &[[force; 3], [moment; 3], [tip_moment; 3]].concat());
 }
 
@@ -88,5 +92,7 @@ fn slides_at_rest_carry_the_weight_alone() {
         assert_close("weight", forces, &[9.0 * 2.5, 4.0 * 2.5]);
     }
     let at = Magnitudes::new(&two_slides(0.0), 0);
-    assert_eq!((at.size, at.bias_force), (vec![0.0, 0.0], vec![12.5, 0.0]));
+    assert_eq!((at.size[1], at.lever[1], at.bias_force), (0.0, 0.0, vec![12.5, 0.0]));
+    // The first has its centre of mass at its origin, and counts an eighth of its radius of gyration.
+    assert_close("size", &at.size[..1], &[1.5_f64.sqrt() / 8.0]);
 }

@@ -7,7 +7,7 @@ use super::{Standing, robots};
 use crate::oracle::hello::Methods;
 use crate::request::states;
 use crate::shape;
-use featherbench_bench::Quantity;
+use featherbench_bench::{Quantity, layout};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -65,6 +65,12 @@ pub(super) fn evaluate_all(exchange: &mut Exchange, index: usize, scene: &Scene,
         let Some(asked) = Quantity::parse(quantity) else { continue };
         if let Some(value) = evaluations(exchange, scene, asked, method) {
             answers.given.entry((quantity.clone(), method.clone())).or_default().push((index, value));
+            if asked == Quantity::BodyJacobian
+                && let Some(value) = of_every_body(exchange, scene, method)
+            {
+                let named = (Quantity::BodyJacobians.name().to_owned(), method.clone());
+                answers.given.entry(named).or_default().push((index, value));
+            }
         }
     }
     true
@@ -98,9 +104,35 @@ pub(super) fn repeated(
     Some(whole)
 }
 
+/// The Jacobian of each body times the vectors of the probe: [`Quantity::BodyJacobians`].
+fn of_every_body(exchange: &mut Exchange, scene: &Scene, method: &str) -> Option<Vec<f64>> {
+    let (robot, bodies) = (&scene.robot, scene.robot.description.bodies.len());
+    let (nv, probe, size) = (robot.states.nv, robot.probe(), Quantity::BodyJacobians.size(robot));
+    let each = size / bodies;
+    let mut values = vec![0.0; robots::STATES * size];
+    for body in 0..bodies {
+        let jacobians = evaluate_of(exchange, scene, Quantity::BodyJacobian, method, body, 0, robots::STATES)?;
+        for (jacobian, out) in jacobians.chunks_exact(6 * nv).zip(values.chunks_exact_mut(size)) {
+            layout::jacobian_products(|row, dof| jacobian[row * nv + dof], &probe, nv, &mut out[body * each..(body + 1) * each]);
+        }
+    }
+    Some(values)
+}
+
 fn evaluate(exchange: &mut Exchange, scene: &Scene, quantity: Quantity, method: &str, first: usize, count: usize) -> Option<Vec<f64>> {
+    evaluate_of(exchange, scene, quantity, method, scene.robot.deepest_body(), first, count)
+}
+
+fn evaluate_of(
+    exchange: &mut Exchange,
+    scene: &Scene,
+    quantity: Quantity,
+    method: &str,
+    body: usize,
+    first: usize,
+    count: usize,
+) -> Option<Vec<f64>> {
     let (robot, named) = (&scene.robot, format!("{} by {method}", quantity.name()));
-    let body = robot.deepest_body();
     let header = json!({"op": "evaluate", "quantity": quantity.name(), "method": method, "first": first, "count": count, "body": body});
     numbers(exchange, scene, &named, header, &shape::of_value(quantity, robot, count))
 }
@@ -148,10 +180,15 @@ fn readback(exchange: &mut Exchange, scene: &Scene, found: &[f64]) {
 impl Answers {
     /// Compares with featherbench, and looks for the mistake that explains a difference; `route` is added to what is noted.
     pub(super) fn judge(&self, exchange: &mut Exchange, scenes: &[Scene], route: &str) {
-        for ((quantity, method), given) in &self.given {
-            let Some(quantity) = Quantity::parse(quantity) else { continue };
-            let compared: Vec<Compared> =
-                given.iter().filter_map(|(index, value)| Compared::new(&scenes[*index], quantity, method, value)).collect();
+        for ((name, method), given) in &self.given {
+            let Some(quantity) = Quantity::parse(name) else { continue };
+            // The Jacobians of all bodies tell nothing new where that of the deepest is wrong.
+            let deepest = (Quantity::BodyJacobian.name().to_owned(), method.clone());
+            let wrong = |one: &Given| Compared::all(scenes, Quantity::BodyJacobian, method, one).iter().any(|answer| !answer.right());
+            if quantity == Quantity::BodyJacobians && self.given.get(&deepest).is_some_and(wrong) {
+                continue;
+            }
+            let compared = Compared::all(scenes, quantity, method, given);
             let wrong: Vec<&Compared> = compared.iter().filter(|answer| !answer.right()).collect();
             let named = format!("{} by {method}{route}", quantity.name());
             let worst = compared.iter().map(|answer| answer.error).fold(0.0, featherbench_bench::measure::worst);
@@ -185,6 +222,10 @@ struct Compared<'a> {
 }
 
 impl<'a> Compared<'a> {
+    fn all(scenes: &'a [Scene], quantity: Quantity, method: &str, given: &'a Given) -> Vec<Self> {
+        given.iter().filter_map(|(index, value)| Self::new(&scenes[*index], quantity, method, value)).collect()
+    }
+
     fn new(scene: &'a Scene, quantity: Quantity, method: &str, value: &'a [f64]) -> Option<Self> {
         let error = scene.error(quantity, &scene.featherbench(quantity)?, value);
         Some(Self { scene, value, error, quantity, tolerance: Scene::tolerance(quantity, method) })
@@ -218,6 +259,9 @@ fn advice(compared: &[Compared], quantity: Quantity) -> Vec<String> {
              coordinates have derivatives too. Compare with differences of the oracle's own id or fd"
                 .into(),
         ];
+    }
+    if quantity == Quantity::BodyJacobians {
+        return vec!["the deepest body's Jacobian is right: `body` may be any body's index in the description, at any state".into()];
     }
     let told = |hypotheses: &[&Hypothesis]| hypotheses.iter().map(|m| format!("{}: {}", m.seems, m.advice)).collect::<Vec<_>>();
     // Most mistakes fail at the first answer: a small wrong one is tried first.
@@ -254,7 +298,7 @@ fn advice(compared: &[Compared], quantity: Quantity) -> Vec<String> {
 /// Notes the quantities that the oracle does not offer.
 pub(super) fn lacking(exchange: &mut Exchange, offered: &Methods) {
     let ours = |quantity: &Quantity| {
-        matches!(quantity, Quantity::Readback | Quantity::ForwardDynamicsSingle | Quantity::MassMatrixSparse)
+        matches!(quantity, Quantity::Readback | Quantity::ForwardDynamicsSingle | Quantity::MassMatrixSparse | Quantity::BodyJacobians)
             || Quantity::SECOND_DERIVATIVES.contains(quantity)
     };
     let inner = |quantity: &Quantity| matches!(quantity, Quantity::Factorization | Quantity::FactorEntries | Quantity::Solve);

@@ -2,7 +2,7 @@
 
 use super::{Lent, shaped};
 use crate::shape;
-use featherbench_bench::{Engine, Evaluation, NoAnswer, Quantity, Robot};
+use featherbench_bench::{Engine, Evaluation, NoAnswer, Quantity, Robot, layout};
 use featherbench_protocol::Memory;
 use serde_json::{Value, json};
 use std::ops::Range;
@@ -26,10 +26,35 @@ impl<'a> Asked<'a> {
 
     /// The question about a range of states.
     fn question(&self, op: &str, range: &Range<usize>) -> Value {
+        self.question_about(op, self.quantity, self.robot.deepest_body(), range)
+    }
+
+    /// The question about a quantity, of this body if it is one of a body.
+    fn question_about(&self, op: &str, quantity: Quantity, body: usize, range: &Range<usize>) -> Value {
         json!({
-            "op": op, "quantity": self.quantity.name(), "method": self.method,
-            "first": range.start, "count": range.len(), "body": self.robot.deepest_body(),
+            "op": op, "quantity": quantity.name(), "method": self.method,
+            "first": range.start, "count": range.len(), "body": body,
         })
+    }
+
+    /// Asks for the Jacobian of every body, and multiplies each with the vectors of the probe. The Jacobians of one body at all states are
+    /// in memory at a time.
+    fn run_jacobians(&mut self, range: &Range<usize>) -> Result<(), NoAnswer> {
+        let (robot, quantity) = (self.robot, Quantity::BodyJacobian);
+        let (nv, probe, bodies) = (robot.states.nv, robot.probe(), robot.description.bodies.len());
+        let due = shape::of_value(quantity, robot, range.len());
+        let size = Quantity::BodyJacobians.size(robot);
+        let each = size / bodies;
+        self.values = vec![0.0; range.len() * size];
+        for body in 0..bodies {
+            let question = self.question_about("evaluate", quantity, body, range);
+            let answer = self.session.open()?.ask(question, Vec::new())?;
+            let jacobians = shaped(&answer, "value", &due)?;
+            for (jacobian, out) in jacobians.chunks_exact(6 * nv).zip(self.values.chunks_exact_mut(size)) {
+                layout::jacobian_products(|row, dof| jacobian[row * nv + dof], &probe, nv, &mut out[body * each..(body + 1) * each]);
+            }
+        }
+        Ok(())
     }
 }
 
@@ -40,6 +65,9 @@ impl Evaluation for Asked<'_> {
         if self.quantity == Quantity::Readback {
             self.values.clone_from(&session.readback);
             return Ok(());
+        }
+        if self.quantity == Quantity::BodyJacobians {
+            return self.run_jacobians(&range);
         }
         let answer = session.ask(question, Vec::new())?;
         self.values = shaped(&answer, "value", &shape::of_value(self.quantity, self.robot, range.len()))?;

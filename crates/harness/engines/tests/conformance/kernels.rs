@@ -1,6 +1,7 @@
 //! Our own kernels as an oracle in this process.
 
-use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
+use featherbench_bench::{Engine, NoAnswer, Quantity, Robot, layout};
+use featherbench_dynamics::Jacobian;
 use featherbench_engines::Featherbench;
 use featherbench_engines::conformance::Connection;
 use featherbench_formats::urdf::{self, Base, Options};
@@ -136,12 +137,22 @@ impl Kernels {
                 if first + count > states.count() {
                     return Err(failed("there are no such states"));
                 }
+                self.evaluated += 1;
+                let shape: Vec<usize> = std::iter::once(count).chain(quantity.shape(robot)).collect();
+                if quantity == Quantity::BodyJacobian {
+                    let (model, body) = (&robot.model, number("body")?);
+                    let body = *robot.model.described.get(body).ok_or_else(|| failed("there is no such body"))?;
+                    let mut value = vec![0.0; shape.iter().product()];
+                    for (k, out) in (first..first + count).zip(value.chunks_exact_mut(quantity.size(robot))) {
+                        let mut work = Jacobian::new(&model.topology);
+                        layout::jacobian(work.run(model, states.q(k), body).map_err(failed)?, out);
+                    }
+                    return Ok(Message::new(json!({}), vec![Block::new("value", &shape, &value)]));
+                }
                 let featherbench = Featherbench::new();
                 let method = featherbench.methods(quantity).swap_remove(0);
                 let mut prepared = featherbench.prepare(robot, quantity, &method, states)?;
                 prepared.run(first..first + count)?;
-                self.evaluated += 1;
-                let shape: Vec<usize> = std::iter::once(count).chain(quantity.shape(robot)).collect();
                 Ok(Message::new(json!({}), vec![Block::new("value", &shape, prepared.read())]))
             }
             "residual" => {

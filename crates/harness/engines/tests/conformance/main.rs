@@ -45,7 +45,7 @@ fn an_honest_oracle_conforms() {
     assert!(conformance.conforms(), "{:#?}", conformance.of(Standing::Wrong).collect::<Vec<_>>());
     assert_eq!(conformance.engine, "kernels 1");
     let values = conformance.of(Standing::Right).filter(|finding| finding.found.contains("27 robots")).count();
-    assert_eq!(values, OFFERED.len(), "every quantity of every robot was compared");
+    assert_eq!(values, OFFERED.len() + 1, "every quantity of every robot was compared, and the Jacobians of all bodies");
     let as_read = conformance.of(Standing::Right).filter(|finding| finding.found.contains("2 robots")).count();
     assert_eq!(as_read, 5, "and every quantity that is answered of robots as read");
     let lacking: Vec<_> = conformance.of(Standing::Lacks).map(|finding| finding.what.as_str()).collect();
@@ -58,7 +58,7 @@ fn derivatives_are_compared() {
     let honest = test(Plant { derivatives: Some("kernel"), ..HONEST });
     assert!(honest.conforms(), "{:#?}", honest.of(Standing::Wrong).collect::<Vec<_>>());
     let values = honest.of(Standing::Right).filter(|finding| finding.found.contains("27 robots")).count();
-    assert_eq!(values, OFFERED.len() + Quantity::DERIVATIVES.len());
+    assert_eq!(values, OFFERED.len() + 1 + Quantity::DERIVATIVES.len());
 
     fn grow(answer: &mut Message, request: &Message, by: f64) {
         if request.text("quantity") == "fd_dq" {
@@ -104,6 +104,20 @@ fn given_back(answer: &mut Message, request: &Message) {
         row[4..10].copy_from_slice(&numbers(&body["inertia"]));
         row[10..19].copy_from_slice(&numbers(&body["joint"]["placement"]["rotation"]));
     }
+}
+
+/// The Jacobian of the first body, at the last state alone.
+#[test]
+fn a_jacobian_of_another_body_than_the_deepest() {
+    let answer = |answer: &mut Message, request: &Message, kernels: &Kernels| {
+        let of_first = request.text("quantity") == "body_jacobian" && request.header["body"] == 0;
+        let several = kernels.robot.as_ref().is_some_and(|robot| robot.depth > 1);
+        if let Some(block) = answer.blocks.iter_mut().find(|block| block.name == "value").filter(|_| of_first && several) {
+            let last = block.data.len() - 1;
+            block.data[last] += 1e-6;
+        }
+    };
+    named(Plant { answer, ..HONEST }, &["body_jacobians"], "any body's index");
 }
 
 const DYNAMICS: [&str; 4] = ["bias", "fd", "id", "id_wrench"];

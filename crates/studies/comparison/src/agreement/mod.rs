@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 const REFERENCE: &str = OWN;
 
 /// The quantities that every engine is asked for.
-pub(crate) const QUANTITIES: [Quantity; 15] = [
+pub(crate) const QUANTITIES: [Quantity; 16] = [
     Quantity::Readback,
     Quantity::InverseDynamics,
     Quantity::InverseDynamicsWrench,
@@ -37,6 +37,7 @@ pub(crate) const QUANTITIES: [Quantity; 15] = [
     Quantity::BodyVelocity,
     Quantity::BodyAcceleration,
     Quantity::BodyJacobian,
+    Quantity::BodyJacobians,
 ];
 
 /// The agreement study.

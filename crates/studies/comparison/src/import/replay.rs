@@ -93,7 +93,8 @@ impl Sizes {
         let largest = |list: &mut dyn Iterator<Item = f64>| list.filter(|x| x.is_finite()).fold(0.0, worst);
         let diagonal: Vec<f64> = (0..nv).map(|i| mass[i * nv + i].abs().sqrt()).collect();
         let heaviest = largest(&mut diagonal.iter().copied());
-        let inertia: Vec<f64> = diagonal.iter().map(|&root| if root > 0.0 { root } else { LEAST * heaviest }).collect();
+        let least = diagonal.iter().zip(&at.least_root).map(|(root, least)| worst(*root, *least));
+        let inertia: Vec<f64> = least.map(|root| if root > 0.0 { root } else { LEAST * heaviest }).collect();
         let strongest = largest(&mut at.joint_force.iter().zip(&inertia).map(|(force, root)| force / root));
         let torque = at.joint_force.iter().zip(&inertia).map(|(&force, root)| force.max(LEAST * strongest * root)).collect();
         Self { torque, inertia }
