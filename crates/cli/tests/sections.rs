@@ -232,7 +232,7 @@ fn a_suite_tells_what_its_answers_do_not_know() {
     let mut random = Random::named(45, "suites and sections");
     for section in Section::ALL {
         let robot = with(plain(&mut random), section, &mut random);
-        featherbench_formats::neutral::write(&robot, &models.join("drawn.json")).unwrap();
+        featherbench_formats::neutral::write(&robot, models.join("drawn.json")).unwrap();
         let suite = "about = \"one\"\nseed = 1\nstates = 2\n[operations]\n[[robot]]\nmodel = \"drawn\"\nfamily = \"chain\"\n";
         let suite = sandbox.write("one.toml", suite);
         for command in ["run", "plan"] {
