@@ -151,8 +151,8 @@ fn what_makes_no_sense_is_refused() {
 fn refused_orders_are_refused_for_their_reason() {
     let mut random = Random::named(1, "orders");
     for _ in 0..200 / one_of(4) {
-        let variables = 1 + random.below(40) as usize;
-        let order = 1 + random.below(if variables < 3 { 80 } else { 12 }) as usize;
+        let variables = 1 + random.below(40);
+        let order = 1 + random.below(if variables < 3 { 80 } else { 12 });
         let space = Space::independent(&vec![Distribution::Uniform { low: 0.9, high: 1.1 }; variables]).unwrap();
         let sum = Closure::new(variables, 1, |x: &[f64], y: &mut [f64]| y[0] = x.iter().sum());
         let nodes = |order: usize| ((order + 1) as f64).powi(variables as i32);
