@@ -15,6 +15,7 @@ import numpy as np
 import pinocchio as pin
 
 from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.loaded import loaded, sound
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading, Unsupported
 from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard, without_free_armature
@@ -39,9 +40,9 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Mode
         else:
             model = pin.buildModelFromUrdf(str(path))
     affordable(model.nv)
-    links = without_free_armature([_link(model, i, path) for i in range(1, model.njoints)], notes)
+    links = loaded(path, without_free_armature([_link(model, i, path) for i in range(1, model.njoints)], notes), notes)
     description = describe(model.name or path.stem, model.gravity.linear, links)
-    _add_frames(description, model)
+    _add_frames(description, model, notes)
     _note_mimics(path, notes)
     _note_gravity(path, model, notes)
     notes.extend(mentioned(path))
@@ -188,7 +189,7 @@ def _dofs(model: pin.Model, q: slice, v: slice) -> dict[str, Array]:
     return {key: value.copy() for key, value in {**dofs, **limits}.items() if key in dofs or (np.abs(value) < UNBOUNDED).all()}
 
 
-def _add_frames(description: Header, model: pin.Model) -> None:
+def _add_frames(description: Header, model: pin.Model, notes: list[Header]) -> None:
     """Add a frame for each link that no joint carries."""
     bodies = {body["name"]: k for k, body in enumerate(description["bodies"])}
     frames = {frame["name"]: Place.of(frame["placement"]) for frame in description["frames"]}
@@ -196,7 +197,7 @@ def _add_frames(description: Header, model: pin.Model) -> None:
     for frame in model.frames:
         link = carriers[frame.parentJoint]
         if frame.type == pin.BODY and (frame.parentJoint == 0 or frame.name != link):
-            on_link = _on_joint(model, frame.parentJoint).inverse() @ _place(frame.placement)
+            on_link = sound(_on_joint(model, frame.parentJoint).inverse() @ _place(frame.placement), frame.name, notes)
             place = frames.get(link, Place()) @ on_link if frame.parentJoint else on_link
             body = bodies[link] if frame.parentJoint else -1
             description["frames"].append({"name": frame.name, "body": body, "placement": place.json()})
