@@ -76,11 +76,8 @@ def variants(path: Path, describe: Describe, model: mj.MjModel, reference: Heade
     if not model.nmesh:  # meshes are read again by each compilation
         for (cause, text, edit), (_, more, other) in combinations(single, 2):
             keep(cause, f"{text}, and {more}", read([edit, other]), alone=False)
-    keep(
-        "free_pose",
-        "the pose of a free body is kept as its joint's placement, and its coordinates are relative to that",
-        _placed(reference, model),
-    )
+    undone = "the pose of a free body is undone by its turned-back rotation and the negative of its translation, which is not its inverse"
+    keep("free_pose", undone, _undone(reference, model))
     keep("axis_length", "the axis of an axisangle in an inertial is not made a unit vector", _long_axes(reference, root))
     return found
 
@@ -237,14 +234,15 @@ EDITS: tuple[tuple[str, str, Edit], ...] = (
 # ---- variants that MuJoCo cannot compile --------------------------------------------------------------------------------------------
 
 
-def _placed(reference: Header, model: mj.MjModel) -> Header | None:
-    """Describe free bodies with their pose in the file as the placement of their joints."""
+def _undone(reference: Header, model: mj.MjModel) -> Header | None:
+    """Describe free bodies on the placement (R, p)(R', -p) = (1, p - R p), where a parser undoes their pose (R, p) by no inverse of it."""
     placed = copy.deepcopy(reference)
     names = {model.body(i).name or f"body {i}": i for i in range(1, model.nbody)}
     for body in placed["bodies"]:
         i = names.get(body["name"])
         if body["joint"]["type"] == "free" and i is not None:
-            body["joint"]["placement"] = Place(turned(*model.body_quat[i]), model.body_pos[i].copy()).json()
+            p = model.body_pos[i].copy()
+            body["joint"]["placement"] = Place(translation=p - turned(*model.body_quat[i]) @ p).json()
     return placed
 
 

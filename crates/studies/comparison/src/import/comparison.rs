@@ -81,12 +81,12 @@ impl Comparison {
         // Kept or dropped is said if the numbers of what carries it are those of one of the two.
         let proved = |i: usize| {
             let Some(above) = carrier(i) else { return true };
-            let of_mass = |finding: &&SingleDifference| {
+            let of_mass = |finding: &SingleDifference| {
                 finding.difference.body == ours.bodies[above].name
                     && OF_MASS.contains(&finding.difference.field)
                     && finding.difference.cause == Cause::Number
             };
-            found.iter().find(of_mass).is_none()
+            !found.iter().any(of_mass)
         };
         let fate = |i: usize| match (proved(i), dropped.contains(&i)) {
             (false, _) => Mass::Unknown,

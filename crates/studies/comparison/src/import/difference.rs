@@ -136,7 +136,7 @@ pub enum Cause {
     FrameSkipped,
     /// The pose of a body that is fixed to the world is not read.
     WorldPose,
-    /// The pose of a free body is kept as its joint's placement: its coordinates are relative to that.
+    /// The pose of a free body is undone by what is not its inverse: it stands elsewhere at the same coordinates.
     FreePose,
     /// `inertiagrouprange` is not read: geoms of all groups count.
     InertiaGroups,

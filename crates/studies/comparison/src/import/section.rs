@@ -278,7 +278,7 @@ fn phrase(name: &str) -> &str {
         "first_tree" => "only the first body of the world is read",
         "frame_skipped" => "a <frame> is skipped with all that is in it",
         "world_pose" => "the pose of a body that is fixed to the world is not read",
-        "free_pose" => "the pose of a free body is kept as its joint's placement",
+        "free_pose" => "the pose of a free body is undone by what is not its inverse",
         "inertia_groups" => "inertiagrouprange is not read",
         "joint_ref" => "the ref of joints is not read",
         "shell" => "shellinertia is not read",
