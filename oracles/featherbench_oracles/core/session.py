@@ -169,6 +169,8 @@ class Session:
         answer = {"nq": self.description.nq, "nv": self.description.nv, "model": reading.model, "notes": reading.notes}
         if reading.written is not None:
             answer["written"] = reading.written
+        if reading.variants:
+            answer["variants"] = reading.variants
         if not reading.keyframes:
             return answer, {}
         return {**answer, "keyframes": list(reading.keyframes)}, {"keyframes": np.array(list(reading.keyframes.values()))}

@@ -18,6 +18,7 @@ from dartpy import common, dynamics, utils
 from dartpy.math import Isometry3
 
 from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.loaded import loaded
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading, Unsupported
 from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, errors, inertial, mentioned, note, overheard
@@ -55,7 +56,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, dynamics
         said = errors(notes) or (notes[-1]["text"] if notes else "it does not say why")
         raise ValueError(f"DART does not read {path.name}: {said}")
     nodes = skeleton.getBodyNodes()
-    description = describe(skeleton.getName() or path.stem, skeleton.getGravity(), _links(nodes))
+    description = describe(skeleton.getName() or path.stem, skeleton.getGravity(), loaded(path, _links(nodes), notes))
     description["frames"] = [frame for frame in description["frames"] if "/" not in frame["name"]]
     _note(path, nodes, notes)
     if form == "urdf" and base == "free" and not any(isinstance(joint, dynamics.FreeJoint) for joint in skeleton.getJoints()):

@@ -20,6 +20,7 @@ from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
 from featherbench_oracles.core.algebra import Array, skew, symmetric
+from featherbench_oracles.core.loaded import loaded
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading
 from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, inertial, mentioned, note, overheard
@@ -51,7 +52,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Multibod
         plant.Finalize()
     joints = _ordered(plant)
     names = [plant.GetModelInstanceName(tree.ModelInstanceIndex(i)) for i in range(2, plant.num_model_instances())]
-    links = _links(plant, joints, damping)
+    links = loaded(path, _links(plant, joints, damping), notes)
     named = _chained(links, path) if form == "mjcf" else links
     description = describe(next(iter(names), path.stem), plant.gravity_field().gravity_vector(), named)
     own = {after.name for before, after in zip(links, named, strict=True) if before.name != after.name}  # not links of the file

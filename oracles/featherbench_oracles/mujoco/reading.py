@@ -24,6 +24,7 @@ import mujoco as mj
 import numpy as np
 
 from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.loaded import loaded
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading
 from featherbench_oracles.core.reading import (
@@ -40,6 +41,7 @@ from featherbench_oracles.core.reading import (
 )
 from featherbench_oracles.core.robot import Description
 from featherbench_oracles.mujoco.loops import loops
+from featherbench_oracles.mujoco.variants import variants
 
 # Without this MuJoCo writes MUJOCO_LOG.TXT into the current folder.
 mj.set_mju_user_warning(lambda text: print(f"warning: {text}", file=sys.stderr))
@@ -68,7 +70,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
     if form == "urdf" and model.neq:
         notes.append(note("mimic", None, f"{model.neq} joints that mimic others are joints of their own with an equality constraint"))
     names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
-    links = without_free_armature([_link(spec, model, names, i) for i in range(1, model.nbody)], notes)
+    links = loaded(path, without_free_armature([_link(spec, model, names, i) for i in range(1, model.nbody)], notes), notes)
     gravity = np.zeros(3) if model.opt.disableflags & mj.mjtDisableBit.mjDSBL_GRAVITY else model.opt.gravity
     description = describe(spec.modelname or path.stem, gravity, links)
     written = None
@@ -84,7 +86,16 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
     keyframes = {_named(model.key(i).name, "key", i): neutral_q(model, model.key_qpos[i]) for i in range(model.nkey)}
     _without_extras(model)
     held = Description.read(description)
-    return Reading(description, held, notes, make(held, model), keyframes, written)
+    others = [] if form != "mjcf" or settings else variants(path, _described, model, description)
+    return Reading(description, held, notes, make(held, model), keyframes, written, others)
+
+
+def _described(spec: mj.MjSpec, model: mj.MjModel) -> Header:
+    """Describe a compiled model."""
+    names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
+    links = without_free_armature([_link(spec, model, names, i) for i in range(1, model.nbody)], [])
+    gravity = np.zeros(3) if model.opt.disableflags & mj.mjtDisableBit.mjDSBL_GRAVITY else model.opt.gravity
+    return describe(spec.modelname or "variant", gravity, links)
 
 
 def neutral_q(model: mj.MjModel, qpos: Array) -> Array:

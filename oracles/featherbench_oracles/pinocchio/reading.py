@@ -16,6 +16,7 @@ import numpy as np
 import pinocchio as pin
 
 from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.loaded import loaded, sound
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading, Unsupported
 from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard, without_free_armature
@@ -42,9 +43,10 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Mode
     affordable(model.nv)
     carried = _carried_frames(model)
     bodies = list(elements(path, "body"))
-    links = without_free_armature([_link(model, i, bodies, carried) for i in range(1, model.njoints)], notes)
+    links = [_link(model, i, bodies, carried) for i in range(1, model.njoints)]
+    links = loaded(path, without_free_armature(links, notes), notes)
     description = describe(model.name or path.stem, model.gravity.linear, links)
-    _add_frames(description, model, carried)
+    _add_frames(description, model, carried, notes)
     _note_mimics(path, notes)
     _note_gravity(path, model, notes)
     notes.extend(mentioned(path))
@@ -198,7 +200,7 @@ def _dofs(model: pin.Model, q: slice, v: slice) -> dict[str, Array]:
     return {key: value.copy() for key, value in {**dofs, **limits}.items() if key in dofs or (np.abs(value) < UNBOUNDED).all()}
 
 
-def _add_frames(description: Header, model: pin.Model, carried: dict[int, pin.Frame]) -> None:
+def _add_frames(description: Header, model: pin.Model, carried: dict[int, pin.Frame], notes: list[Header]) -> None:
     """Add a frame for each link that no joint carries."""
     bodies = {body["name"]: k for k, body in enumerate(description["bodies"])}
     frames = {frame["name"]: Place.of(frame["placement"]) for frame in description["frames"]}
@@ -206,7 +208,7 @@ def _add_frames(description: Header, model: pin.Model, carried: dict[int, pin.Fr
     for frame in model.frames:
         link = carriers[frame.parentJoint]
         if frame.type == pin.BODY and (frame.parentJoint == 0 or frame.name != link):
-            on_link = _on_joint(carried, frame.parentJoint).inverse() @ _place(frame.placement)
+            on_link = sound(_on_joint(carried, frame.parentJoint).inverse() @ _place(frame.placement), frame.name, notes)
             place = frames.get(link, Place()) @ on_link if frame.parentJoint else on_link
             body = bodies[link] if frame.parentJoint else -1
             description["frames"].append({"name": frame.name, "body": body, "placement": place.json()})

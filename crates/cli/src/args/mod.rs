@@ -167,10 +167,11 @@ Two routes, kept apart. Neutral: one model through each engine's programming int
 file through each engine's own parser; a difference there is told by body, field and cause, and the engine's answers are replayed with our
 kernels on what it says to have read. What that does not explain is called unexplained.
 
-A difference is of one of three classes. Physics: the mass matrix or the inverse dynamics change by more than rounding (1e-12, and 1e-14 for each
-joint of a chain beyond a hundred), a body or joint is another, the answers are not explained, or the engine refuses the file. Rounding: a
-field that enters them differs, and they do not. Not read: what enters neither, such as damping, friction, limits or the order of joints. Only
-physics makes the exit code 1; with --strict the two others do as well.
+A difference is of one of five classes. Physics: the mass matrix or the inverse dynamics change by more than rounding (1e-12, and 1e-14 for each
+joint of a chain beyond a hundred), a body or joint is another, the answers are not explained, or the engine refuses the file. Pose: a
+body stands elsewhere in the world, and neither changes. Unfelt: a field that enters them differs, and this robot's M and inverse dynamics do not
+show it. Rounding: such a field differs by 1024 ε of its scale at most. Not read: what enters neither, such as damping, friction, limits or the
+order of joints. Physics and pose make the exit code 1; with --strict the others do as well.
 
 The answer is first: one line for each robot and engine. With --json, standard output is one object: run, suite, status (alike, differs), report (the
 page), robots: [{robot, base, bodies, nv, reference, remarks, engines}], conditions: {met, all, unmet: [{what, reason, culprit}]}, refused (messages of
@@ -195,6 +196,9 @@ pub struct CompareArgs {
     /// Exit 1 also for differences that change no physics: fields that an engine does not read, rounding, files beyond its limits.
     #[arg(long)]
     pub strict: bool,
+    /// List for each engine the hypotheses about the file that its numbers refute.
+    #[arg(long)]
+    pub explain: bool,
     /// Print everything as JSON.
     #[arg(long)]
     pub json: bool,

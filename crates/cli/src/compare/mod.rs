@@ -108,7 +108,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     } else {
         message::text(&table::answers(&answers(&records)));
         for (robot, (_, remarks)) in robots.iter().zip(&remarks) {
-            message::text(&table::of(robot, remarks, &opened.engines, &records));
+            message::text(&table::of(robot, remarks, &opened.engines, &records, args.explain));
         }
         say!("report: {}", page.display());
         for condition in &unmet {

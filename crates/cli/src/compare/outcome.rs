@@ -33,8 +33,10 @@ fn of_engine(robot: &Robot, engine: &str, records: &[Row], strict: bool) -> Vec<
     // Many small differences may add up to one that counts.
     let physics = count("physics").max(u64::from(far));
     list.push(condition(format!("differences of {name} in {engine} that change the physics"), physics, told(physics)));
+    let displaced = count("pose");
+    list.push(condition(format!("differences of {name} in {engine} that displace it in the world"), displaced, told(displaced)));
     if strict {
-        let others = count("rounding") + count("not_read");
+        let others = count("unfelt") + count("rounding") + count("not_read");
         list.push(condition(format!("other differences in what {engine} reads of {name}"), others, told(others)));
     }
     if let Some(row) = of("unexplained") {

@@ -32,7 +32,7 @@ pub fn answers(answers: &[Answer]) -> String {
 }
 
 /// What each engine makes of a robot, as text.
-pub fn of(robot: &Robot, remarks: &[String], engines: &[Box<dyn Engine>], records: &[Row]) -> String {
+pub fn of(robot: &Robot, remarks: &[String], engines: &[Box<dyn Engine>], records: &[Row], explain: bool) -> String {
     let states = &robot.states;
     let reference = records.iter().find(|row| row.study == "import" && row.robot == robot.name).map_or(OWN, |row| &row.reference);
     let reference = if reference == OWN { "featherbench's own reading" } else { "the reading of MuJoCo's compiler" };
@@ -50,9 +50,20 @@ pub fn of(robot: &Robot, remarks: &[String], engines: &[Box<dyn Engine>], record
             |error| format!("id, bias and M agree to {error:.1e}"),
         );
         text += &format!("    one neutral model   {computed}\n");
-        text += &as_read(&rows.into_iter().filter(|row| row.study == "import").collect::<Vec<_>>());
+        let rows: Vec<&Row> = rows.into_iter().filter(|row| row.study == "import").collect();
+        text += &as_read(&rows);
+        if explain {
+            text += &refuted(&rows);
+        }
     }
     text
+}
+
+/// The hypotheses about the whole file that an engine's numbers refute.
+fn refuted(rows: &[&Row]) -> String {
+    let params = rows.iter().find(|row| row.metric == "differences").map_or(Value::Null, |row| params(row));
+    let refuted = params["refuted"].as_array().into_iter().flatten().filter_map(Value::as_str);
+    refuted.map(|text| format!("      refuted: {text}\n")).collect()
 }
 
 /// The engines that reject the file as it is written, and what was repaired to go on. It is told first: an engine that imports the file as
@@ -82,7 +93,13 @@ fn as_read(rows: &[&Row]) -> String {
     let felt: Vec<&(&Row, Value)> = differences.iter().filter(|(_, params)| params["weight"] != "information").collect();
     let classes = params(read);
     let class = |name: &str| classes[name].as_u64().unwrap_or(0);
-    let counted = [("physics", "change the physics"), ("rounding", "are rounding"), ("not_read", "are not read or carried otherwise")];
+    let counted = [
+        ("physics", "change the physics"),
+        ("pose", "displace it in the world, with the same M and τ"),
+        ("unfelt", "show in neither M nor τ of this robot"),
+        ("rounding", "are rounding"),
+        ("not_read", "are not read or carried otherwise"),
+    ];
     let counted: Vec<String> =
         counted.into_iter().filter(|(name, _)| class(name) > 0).map(|(name, words)| format!("{} {words}", class(name))).collect();
     let mut text = match count as u64 {

@@ -6,6 +6,7 @@ mod bad_oracle;
 mod conditioning;
 mod convicted;
 mod derivatives;
+mod drawn_causes;
 mod import;
 mod over_best;
 mod planted;

@@ -1,6 +1,7 @@
 //! The import study fails an engine that computes with another robot than it reports: it is called unexplained, with the smallest sub-tree
 //! that shows it. An engine that reports its edits correctly does not fail.
 
+use crate::share::one_of;
 use featherbench_bench::{
     Engine, Evaluation, FileBase, FileFormat, Identity, Import as Read, ImportNote, NoAnswer, Quantity, Robot, RobotFile,
 };
@@ -9,7 +10,7 @@ use featherbench_doubles::{gates, robot, whole};
 use featherbench_engines::Featherbench;
 use featherbench_model::{Description, Model};
 use featherbench_results::{EngineSource, Row, Verdict};
-use featherbench_robots::StateBatch;
+use featherbench_robots::{Random, StateBatch};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -28,7 +29,13 @@ impl Parser {
         held.model = Model::build(&held.description).unwrap();
         let note = ImportNote { cause: "warning".into(), about: None, text: "something".into(), numbers: Vec::new() };
         Self {
-            says: Ok(Read { description: says.canonical().unwrap(), notes: vec![note], keyframes: Vec::new(), written: None }),
+            says: Ok(Read {
+                description: says.canonical().unwrap(),
+                notes: vec![note],
+                keyframes: Vec::new(),
+                written: None,
+                variants: Vec::new(),
+            }),
             holds: Some(held),
             ..Self::refusing("")
         }
@@ -169,6 +176,69 @@ fn a_body_less_is_compared_on_what_is_left() {
     assert_eq!(row(&records, "unexplained", "import").verdict, Verdict::Pass);
     let error = row(&records, "as_read", "mass_matrix").value.unwrap();
     assert!(error < 1e-12, "the joint stands still on both sides: {error}");
+}
+
+/// A robot that stands elsewhere has the same M and τ, and is not the same robot.
+#[test]
+fn a_displaced_robot_is_never_called_rounding() {
+    let robot = filed("humanoid");
+    let root = robot.description.bodies.iter().position(|body| body.parent.is_none()).unwrap();
+    let mut random = Random::new(44, 3);
+    for decade in 0..=12 {
+        let mut moved = robot.description.clone();
+        let by = 10.0_f64.powi(-decade) * random.uniform(1.0, 3.0);
+        let direction: [f64; 3] = random.direction();
+        let translation = &mut moved.bodies[root].joint.placement.translation;
+        *translation = std::array::from_fn(|k| translation[k] + by * direction[k]);
+        let records = records(&robot, Parser::new(moved.clone(), &moved, &robot));
+        let difference = row(&records, "difference", "placement");
+        assert_eq!(params(difference)["class"], "pose", "{by} m: {difference:?}");
+        assert_eq!(params(row(&records, "differences", "import"))["pose"], 1);
+    }
+}
+
+/// Advice is given only if the robot with it has the reference's M and τ.
+#[test]
+fn advice_that_does_not_help_is_not_given() {
+    let robot = filed("quadruped");
+    let mut random = Random::new(44, 4);
+    for _ in (0..200).step_by(one_of(25)) {
+        let mut edited = robot.description.clone();
+        let bodies = edited.bodies.len();
+        let mut names = Vec::new();
+        for _ in 0..1 + random.below(3) {
+            let body = &mut edited.bodies[random.below(bodies)];
+            body.mass *= random.uniform(1.1, 2.0);
+            names.push(body.name.clone());
+        }
+        let records_of = records(&robot, Parser::new(edited.clone(), &edited, &robot));
+        let remedy = params(row(&records_of, "differences", "import"))["remedy"].as_str().unwrap().to_owned();
+        assert!(names.iter().all(|name| remedy.contains(&format!("'{name}'"))), "{names:?}: {remedy}");
+        // Where a body is lost, nothing that can be set helps.
+        let leaf = bodies - 1;
+        let joint = &mut edited.bodies[leaf].joint;
+        *joint = featherbench_model::JointDescription { name: joint.name.clone(), placement: joint.placement, ..Default::default() };
+        let fewer = edited.canonical().unwrap();
+        let mut parser = Parser::new(fewer.clone(), &fewer, &robot);
+        parser.holds.as_mut().unwrap().depth = fewer.depth();
+        let records = records(&robot, parser);
+        assert!(params(row(&records, "differences", "import"))["remedy"].is_null());
+    }
+}
+
+/// An engine that holds no joint has read the file: all bodies are lost in it, and it is asked nothing more.
+#[test]
+fn an_engine_that_loads_an_empty_robot_does_not_refuse() {
+    let robot = filed("quadruped");
+    let mut parser = Parser::refusing("");
+    let empty = Description { bodies: Vec::new(), frames: Vec::new(), ..robot.description.clone() };
+    parser.says = Ok(Read { description: empty, notes: Vec::new(), keyframes: Vec::new(), written: None, variants: Vec::new() });
+    let records = records(&robot, parser);
+    let read = row(&records, "differences", "import");
+    assert_eq!(read.value, Some(robot.description.bodies.len() as f64));
+    let bodies = records.iter().filter(|row| row.metric == "difference" && row.quantity == "body");
+    assert!(bodies.clone().count() == robot.description.bodies.len() && bodies.into_iter().all(|row| params(row)["cause"] == "dropped"));
+    assert!(records.iter().all(|row| row.verdict != Verdict::Error), "{records:#?}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// The result of a file's import by an engine's own parser.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {
-    /// The engine's robot, canonical.
+    /// The engine's robot, canonical. It has no body if the engine holds no joint.
     pub description: Description,
     /// The parser's known edits.
     pub notes: Vec<ImportNote>,
@@ -15,6 +15,19 @@ pub struct Import {
     pub keyframes: Vec<Vec<f64>>,
     /// The same robot with the file's own inertias, if the engine repaired them.
     pub written: Option<Description>,
+    /// What the file would be to a parser that reads one thing of it otherwise, by the engine that is the reference of its format.
+    pub variants: Vec<ImportVariant>,
+}
+
+/// The robot of a file of which one thing, or several, are read otherwise: a hypothesis about another parser.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImportVariant {
+    /// A word of `oracles/PROTOCOL.md`, such as `gravity_ignored`.
+    pub cause: String,
+    /// What is read otherwise, as the end of a sentence.
+    pub text: String,
+    /// The robot, canonical. It has no body if nothing moves.
+    pub description: Description,
 }
 
 /// An edit by a parser, or an element that it did not import.
@@ -41,6 +54,9 @@ struct Written {
     /// That of the robot with the file's own inertias.
     written: Option<String>,
     keyframes: Vec<Vec<f64>>,
+    /// Of each variant its cause, its text and the text of its description.
+    #[serde(default)]
+    variants: Vec<(String, String, String)>,
 }
 
 impl Import {
@@ -52,7 +68,9 @@ impl Import {
         let text = |description: &Description| neutral::to_string(description).map_err(|error| error.to_string());
         let written = self.written.as_ref().map(text).transpose()?;
         let (description, notes, keyframes) = (text(&self.description)?, self.notes.clone(), self.keyframes.clone());
-        serde_json::to_string(&Written { notes, description, written, keyframes }).map_err(|error| error.to_string())
+        let variant = |variant: &ImportVariant| Ok((variant.cause.clone(), variant.text.clone(), text(&variant.description)?));
+        let variants = self.variants.iter().map(variant).collect::<Result<_, String>>()?;
+        serde_json::to_string(&Written { notes, description, written, keyframes, variants }).map_err(|error| error.to_string())
     }
 
     /// The import of a text by [`Import::to_text`].
@@ -60,9 +78,12 @@ impl Import {
     /// # Errors
     /// A sentence, when the text is no import.
     pub fn from_text(text: &str) -> Result<Self, String> {
-        let Written { notes, description, written, keyframes } = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let Written { notes, description, written, keyframes, variants } = serde_json::from_str(text).map_err(|error| error.to_string())?;
         let parse = |text: &str| neutral::parse(text, "an import").map_err(|error| error.to_string());
         let written = written.as_deref().map(parse).transpose()?;
-        Ok(Self { description: parse(&description)?, notes, keyframes, written })
+        let variant =
+            |(cause, text, description): (String, String, String)| Ok(ImportVariant { cause, text, description: parse(&description)? });
+        let variants = variants.into_iter().map(variant).collect::<Result<_, String>>()?;
+        Ok(Self { description: parse(&description)?, notes, keyframes, written, variants })
     }
 }

@@ -1,7 +1,7 @@
 //! The answer to the operation `import`: what an engine's own parser has made of a file.
 
 use super::folders::without_folders;
-use featherbench_bench::{Import, ImportNote};
+use featherbench_bench::{Import, ImportNote, ImportVariant};
 use featherbench_model::{BodyDescription, Description};
 use featherbench_protocol::Message;
 use serde_json::Value;
@@ -14,7 +14,7 @@ pub(crate) fn reading(answer: &Message) -> Result<Import, String> {
     let model = answer.header.get("model").ok_or("there is no model")?;
     let parse = |model: &Value| featherbench_formats::neutral::parse(&model.to_string(), "the model").map_err(|error| error.to_string());
     let description = parse(model)?;
-    let canonical = description.canonical().map_err(|error| error.to_string())?;
+    let canonical = canonical(&description)?;
     // States and answers are in the order of the bodies. An order that changed here would mix them up. Numbers may be normalised.
     let order = |robot: &Description| robot.bodies.iter().map(|body| (body.name.clone(), body.parent)).collect::<Vec<_>>();
     if order(&canonical) != order(&description) {
@@ -37,7 +37,26 @@ pub(crate) fn reading(answer: &Message) -> Result<Import, String> {
     if let Some(written) = written.as_ref().filter(|written| !same_tree(written, &canonical)) {
         return Err(format!("'{}' as written has other bodies or joints than as read", written.name));
     }
-    Ok(Import { description: canonical, notes: notes.iter().map(note).collect(), keyframes, written })
+    let listed = answer.header.get("variants").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    let variants = listed.iter().map(|given| variant(given, parse)).collect::<Result<_, String>>()?;
+    Ok(Import { description: canonical, notes: notes.iter().map(note).collect(), keyframes, written, variants })
+}
+
+/// The canonical form. A robot without a body stays one: an engine that holds no joint has read the file all the same.
+fn canonical(description: &Description) -> Result<Description, String> {
+    if description.bodies.is_empty() {
+        return Ok(description.clone());
+    }
+    description.canonical().map_err(|error| error.to_string())
+}
+
+/// The robot that the file would be, if one thing were read otherwise.
+fn variant(given: &Value, parse: impl Fn(&Value) -> Result<Description, String>) -> Result<ImportVariant, String> {
+    let text = |key: &str| given.get(key).and_then(Value::as_str).map(str::to_owned).ok_or_else(|| format!("a variant has no {key}"));
+    let (cause, text) = (text("cause")?, text("text")?);
+    let model = given.get("model").ok_or_else(|| format!("variant {cause} has no model"))?;
+    let description = parse(model).and_then(|model| canonical(&model)).map_err(|error| format!("variant {cause}: {error}"))?;
+    Ok(ImportVariant { cause, text, description })
 }
 
 /// Whether two descriptions have the same bodies on the same joints: states of one are states of the other.

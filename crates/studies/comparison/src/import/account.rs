@@ -120,16 +120,20 @@ impl<'a> Parts<'a> {
             sum += placed(part, changed.or(part.given.as_ref()));
         }
         let predicted = self.merged(sum);
-        let agrees = |field: &Field| {
-            // A body without mass has no centre of mass. So no import result of it differs (MuJoCo puts it where the body is in its
-            // parent).
-            if *field == Field::Com && self.body.mass == 0.0 {
-                return true;
-            }
-            let nowhere = *field == Field::Com && predicted.mass == 0.0 && theirs.mass != 0.0;
-            !nowhere && !differs(fields::size(*field, &predicted, theirs, self.reach), self.rounding)
+        // A body without mass has no centre of mass. So no import result of it differs (MuJoCo puts it where the body is in its parent).
+        let nowhere = |field: Field| field == Field::Com && self.body.mass == 0.0;
+        let agrees = |field: Field| {
+            let no_place = field == Field::Com && predicted.mass == 0.0 && theirs.mass != 0.0;
+            !no_place && !differs(fields::size(field, &predicted, theirs, self.reach), self.rounding)
         };
-        fields.iter().all(agrees).then(|| self.told(changes))
+        let changed = |field: Field| differs(fields::size(field, self.body, &predicted, self.reach), self.rounding);
+        // It changes one of the fields that it is to explain, and whatever it changes the engine has so.
+        let claims = fields.iter().any(|&field| changed(field) || nowhere(field));
+        let honest = OF_MASS.into_iter().all(|field| fields.contains(&field) || !changed(field) || nowhere(field) || agrees(field));
+        if !claims || !honest {
+            return None;
+        }
+        fields.iter().all(|&field| nowhere(field) || agrees(field)).then(|| self.told(changes))
     }
 
     fn merged(&self, sum: RigidBodyInertia<f64>) -> BodyDescription {

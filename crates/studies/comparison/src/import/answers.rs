@@ -190,25 +190,24 @@ fn advice(read: &Row, rows: &[&Row], repaired: &[String], same: Option<bool>, op
         return format!("correct the file: {}", first(repair));
     }
     match (same, largest) {
-        (Some(false), Some(largest)) => remedy(largest),
-        (Some(false), None) => "add the differences that the report lists".into(),
+        (Some(false), largest) => remedy(read, largest),
         (None, _) => "compare the listed fields: M and τ were not asked".into(),
+        // The same M and τ, and the robot stands elsewhere.
+        (Some(true), _) if params(read)["pose"].as_u64().is_some_and(|count| count > 0) => remedy(read, largest),
         (Some(true), _) => carried(rows),
     }
 }
 
-/// What to do about the difference that changes M or τ most.
-fn remedy(largest: &Largest) -> String {
-    let Largest { body, field, ours, .. } = largest;
-    match largest.cause.as_str() {
-        "default_inertia" => format!("write an inertial of '{body}' into the file"),
-        "balanced" | "bounds" | "unphysical" => format!("write an inertia of '{body}' that a body can have"),
-        "mimic" => format!("take the joint of '{body}' as free, or couple it by yourself: engines treat mimic joints in different ways"),
-        "merged" | "dropped" => format!("do not count on a degree of freedom at '{body}': this engine fixes it"),
-        "geometry" => format!("write an inertial of '{body}', so that no shape gives its mass"),
-        "unsupported" => format!("set the {} of '{body}' by the engine's interface after loading", field.replace('_', " ")),
-        _ if body.is_empty() => format!("set the robot's {} to {ours} after loading", field.replace('_', " ")),
-        _ => format!("set the {} of '{body}' to {ours} after loading", field.replace('_', " ")),
+/// What to do about differences: what was tried on the robot and helps, or that nothing does.
+fn remedy(read: &Row, largest: Option<&Largest>) -> String {
+    let params = params(read);
+    let body = largest.map_or("", |largest| largest.body.as_str());
+    match (params["remedy"].as_str(), largest.map_or("", |largest| largest.cause.as_str())) {
+        (_, "mimic") => {
+            format!("take the joint of '{body}' as free, or couple it by yourself: engines treat mimic joints in different ways")
+        }
+        (Some(tried), _) => tried.to_owned(),
+        _ => "do not use this engine for this file as it is: what it loses cannot be set after loading".into(),
     }
 }
 

@@ -6,7 +6,7 @@ use super::cause::cause;
 use super::fields::{self, OF_A_BODY, differs, digits};
 use super::pairs::{chained, pairs};
 use super::{Cause, Difference, Field};
-use featherbench_bench::{FileLink, ImportNote};
+use featherbench_bench::{FileLink, ImportNote, ImportVariant};
 use featherbench_model::{BodyDescription, Description, JointType};
 use std::collections::HashMap;
 
@@ -17,6 +17,8 @@ pub struct Comparison {
     pub findings: Vec<SingleDifference>,
     /// Our robot without the bodies that theirs does not have as moving bodies.
     pub ours: Description,
+    /// The hypotheses about the whole file that are refuted, each with the number that refutes it.
+    pub refuted: Vec<String>,
 }
 
 /// A difference, and our robot with this difference alone.
@@ -41,25 +43,67 @@ impl Comparison {
             .enumerate()
             .filter_map(|(i, j)| Some((ours.bodies[i].name.as_str(), theirs.bodies[(*j)?].name.as_str())))
             .collect();
-        let Some(reduced) = without(&theirs, &extra, Mass::Kept) else {
-            findings.splice(0..0, gone.iter().map(|&i| missing(&ours.bodies[i], Mass::Kept, notes)));
-            return Self { findings, ours };
+        let Some(reduced) = without(&theirs, &extra, &[]) else {
+            // Nothing is left that could hold a mass.
+            let fixed = |i: usize| if framed(&theirs, &ours.bodies[i].name) { Mass::Kept } else { Mass::Dropped };
+            findings.splice(0..0, gone.iter().map(|&i| missing(&ours.bodies[i], fixed(i), notes)));
+            return Self { findings, ours, refuted: Vec::new() };
         };
         // A missing body was merged into its parent, or dropped with its mass: the numbers of the other bodies show which.
-        let mut best: Option<(usize, Mass, Description, Vec<SingleDifference>)> = None;
-        let hypotheses: &[Mass] = if gone.is_empty() { &[Mass::Kept] } else { &[Mass::Kept, Mass::Dropped] };
-        for &mass in hypotheses {
-            let Some(left) = without(&ours, &gone, mass) else { continue };
+        let tried = |dropped: &[usize]| {
+            let left = without(&ours, &gone, dropped)?;
             let found = shared(&left, &reduced, &names, links, notes);
             let count = found.iter().filter(|finding| finding.difference.field.weight() == super::Weight::Dynamics).count();
-            if best.as_ref().is_none_or(|(fewest, ..)| count < *fewest) {
-                best = Some((count, mass, left, found));
+            Some((count, dropped.to_vec(), left, found))
+        };
+        // A body whose parent is the world leaves its mass in no number: it is there if the engine has a frame of its name.
+        let carrier = |i: usize| {
+            let mut above = ours.bodies[i].parent;
+            while let Some(parent) = above.filter(|parent| gone.contains(parent)) {
+                above = ours.bodies[parent].parent;
             }
+            above
+        };
+        let (rooted, carried): (Vec<usize>, Vec<usize>) = gone.iter().partition(|&&i| carrier(i).is_none());
+        let unseen: Vec<usize> = rooted.into_iter().filter(|&i| !framed(&theirs, &ours.bodies[i].name)).collect();
+        let all: Vec<usize> = unseen.iter().chain(&carried).copied().collect();
+        let mut best = fewest(tried(&unseen), tried(&all).filter(|_| !carried.is_empty()));
+        for &i in carried.iter().take(MOST_SINGLE) {
+            let Some((_, dropped, ..)) = &best else { break };
+            let mut other: Vec<usize> = dropped.iter().copied().filter(|&j| j != i).collect();
+            if other.len() == dropped.len() {
+                other.push(i);
+            }
+            let other = tried(&other);
+            best = fewest(best, other);
         }
-        let (mass, left, found) = best.map_or((Mass::Kept, ours.clone(), Vec::new()), |(_, mass, left, found)| (mass, left, found));
-        findings.splice(0..0, gone.iter().map(|&i| missing(&ours.bodies[i], mass, notes)));
+        let (_, dropped, left, found) = best.unwrap_or_else(|| (0, Vec::new(), ours.clone(), Vec::new()));
+        // Kept or dropped is said if the numbers of what carries it are those of one of the two.
+        let proved = |i: usize| {
+            let Some(above) = carrier(i) else { return true };
+            let of_mass = |finding: &SingleDifference| {
+                finding.difference.body == ours.bodies[above].name
+                    && OF_MASS.contains(&finding.difference.field)
+                    && finding.difference.cause == Cause::Number
+            };
+            !found.iter().any(of_mass)
+        };
+        let fate = |i: usize| match (proved(i), dropped.contains(&i)) {
+            (false, _) => Mass::Unknown,
+            (true, true) => Mass::Dropped,
+            (true, false) => Mass::Kept,
+        };
+        findings.splice(0..0, gone.iter().map(|&i| missing(&ours.bodies[i], fate(i), notes)).collect::<Vec<_>>());
         findings.extend(found);
-        Self { findings, ours: left }
+        Self { findings, ours: left, refuted: Vec::new() }
+    }
+
+    /// The same with what is known of the whole file: what it would be if one thing were read otherwise, and the check after loading.
+    #[must_use]
+    pub fn explained_by(mut self, ours: &Description, theirs: &Description, variants: &[ImportVariant], notes: &[ImportNote]) -> Self {
+        self.refuted = super::variants::explain(&mut self, ours, theirs, variants);
+        super::variants::unsound(&mut self, ours, notes);
+        self
     }
 
     /// The differences alone.
@@ -68,21 +112,43 @@ impl Comparison {
     }
 }
 
+/// A hypothesis about missing bodies: the number of differences of what is left, the bodies that are dropped, what is left, its differences.
+type Hypothesis = (usize, Vec<usize>, Description, Vec<SingleDifference>);
+
+/// The hypothesis with fewer differences; the first of equals.
+fn fewest(a: Option<Hypothesis>, b: Option<Hypothesis>) -> Option<Hypothesis> {
+    match (&a, &b) {
+        (Some(x), Some(y)) if y.0 < x.0 => b,
+        (None, _) => b,
+        _ => a,
+    }
+}
+
+/// Missing bodies of which each is tried by itself. Each trial compares whole robots.
+const MOST_SINGLE: usize = 16;
+
 /// What happened to the mass of a body that no longer moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mass {
     Kept,
     Dropped,
+    /// The body that carries it has neither the sum nor its own mass.
+    Unknown,
 }
 
-/// The robot with some bodies fixed to their parents, if any body still moves.
-fn without(description: &Description, gone: &[usize], mass: Mass) -> Option<Description> {
+/// Whether a robot has a frame of this name.
+fn framed(description: &Description, name: &str) -> bool {
+    description.frames.iter().any(|frame| frame.name == name)
+}
+
+/// The robot with some bodies fixed to their parents, of which some are dropped with their mass, if any body still moves.
+fn without(description: &Description, gone: &[usize], dropped: &[usize]) -> Option<Description> {
     let mut reduced = description.clone();
     for &i in gone {
         let body = &mut reduced.bodies[i];
         body.joint =
             featherbench_model::JointDescription { name: body.joint.name.clone(), placement: body.joint.placement, ..Default::default() };
-        if mass == Mass::Dropped {
+        if dropped.contains(&i) {
             (body.mass, body.inertia) = (0.0, [0.0; 6]);
         }
     }
@@ -92,7 +158,8 @@ fn without(description: &Description, gone: &[usize], mass: Mass) -> Option<Desc
 fn missing(body: &BodyDescription, mass: Mass, notes: &[ImportNote]) -> SingleDifference {
     let (cause, theirs) = match mass {
         Mass::Kept => (Cause::Merged, "fixed to its parent"),
-        Mass::Dropped => (Cause::Dropped, "none, and its mass is gone"),
+        Mass::Dropped => (Cause::Dropped, super::variants::LOST),
+        Mass::Unknown => (Cause::Number, "none, and its mass is not found where it would be"),
     };
     let ours = format!("{} joint '{}'", body.joint.kind.name(), body.joint.name);
     let mut finding = whole(&body.name, Field::Body, ours, theirs.into(), cause);

@@ -128,6 +128,34 @@ pub enum Cause {
     PlanarAxis,
     /// Euler angles were taken in the default sequence and not in the file's `eulerseq`.
     EulerSequence,
+    /// The file's gravity is not read: the engine has its own.
+    GravityIgnored,
+    /// Only the first body of the world is read, with what it carries.
+    FirstTree,
+    /// A `<frame>` of an MJCF is skipped with all that is in it.
+    FrameSkipped,
+    /// The pose of a body that is fixed to the world is not read.
+    WorldPose,
+    /// The pose of a free body is undone by what is not its inverse: it stands elsewhere at the same coordinates.
+    FreePose,
+    /// `inertiagrouprange` is not read: geoms of all groups count.
+    InertiaGroups,
+    /// The `ref` of joints is not read.
+    JointRef,
+    /// `shellinertia` is not read: the solid is taken.
+    Shell,
+    /// Default classes, or some of their attributes, are not read.
+    Classes,
+    /// Inertials are not read: geoms give the mass.
+    InertialIgnored,
+    /// Only the first `<compiler>` is read.
+    FirstCompiler,
+    /// The axis of an `axisangle` is not made a unit vector.
+    AxisLength,
+    /// The engine holds a matrix that is no rotation.
+    NotARotation,
+    /// The engine holds mass properties that no body has.
+    NotAMass,
 }
 
 impl Field {
@@ -167,18 +195,29 @@ impl Field {
 pub enum Class {
     /// The mass matrix or the inverse dynamics change by more than rounding, or it is another robot.
     Physics,
-    /// A field that they depend on differs, but they change by no more than rounding.
+    /// A body stands elsewhere in the world, and neither changes: the whole robot is displaced, or its coordinates begin elsewhere.
+    Pose,
+    /// A field that they depend on differs by more than rounding, and this robot's M and inverse dynamics do not show it.
+    Unfelt,
+    /// A field that they depend on differs by no more than the rounding of its own number.
     Rounding,
     /// No compared quantity depends on it: damping, friction, limits, an order.
     NotRead,
 }
 
 impl Class {
-    /// The class of a difference. `effect` is the larger change of M and inverse dynamics by it alone, if that can be computed. `bound` is
-    /// the change that rounding may cause.
-    pub fn of(field: Field, effect: Option<f64>, bound: f64) -> Self {
+    /// The most that rounding moves a number, relative to its scale: 1024 ε, or 2.3e-13. Each link that is merged and each turn of a frame
+    /// rounds by some ε, and robots whose frames move along have hundreds of those on a path. An edit by a parser, or a displacement of
+    /// 1e-12 of the reach, is larger.
+    pub const ULPS: f64 = 1024.0 * f64::EPSILON;
+
+    /// The class of a difference of a size. `effect` is the larger change of M and inverse dynamics by it alone, if that can be computed.
+    /// `bound` is the change that rounding may cause.
+    pub fn of(field: Field, size: f64, effect: Option<f64>, bound: f64) -> Self {
         match (field.weight(), effect) {
-            (Weight::Dynamics, Some(effect)) if effect <= bound => Self::Rounding,
+            (Weight::Dynamics, Some(effect)) if effect <= bound && size <= Self::ULPS => Self::Rounding,
+            (Weight::Dynamics, Some(effect)) if effect <= bound && matches!(field, Field::Placement | Field::Axis) => Self::Pose,
+            (Weight::Dynamics, Some(effect)) if effect <= bound => Self::Unfelt,
             (Weight::Dynamics, _) => Self::Physics,
             (Weight::Carried | Weight::Information, _) => Self::NotRead,
         }
@@ -188,6 +227,8 @@ impl Class {
     pub fn name(self) -> &'static str {
         match self {
             Self::Physics => "physics",
+            Self::Pose => "pose",
+            Self::Unfelt => "unfelt",
             Self::Rounding => "rounding",
             Self::NotRead => "not_read",
         }
@@ -238,6 +279,20 @@ impl Cause {
             Self::Transposed => "transposed",
             Self::PlanarAxis => "planar_axis",
             Self::EulerSequence => "euler_sequence",
+            Self::GravityIgnored => "gravity_ignored",
+            Self::FirstTree => "first_tree",
+            Self::FrameSkipped => "frame_skipped",
+            Self::WorldPose => "world_pose",
+            Self::FreePose => "free_pose",
+            Self::InertiaGroups => "inertia_groups",
+            Self::JointRef => "joint_ref",
+            Self::Shell => "shell",
+            Self::Classes => "classes",
+            Self::InertialIgnored => "inertial_ignored",
+            Self::FirstCompiler => "first_compiler",
+            Self::AxisLength => "axis_length",
+            Self::NotARotation => "not_a_rotation",
+            Self::NotAMass => "not_a_mass",
         }
     }
 }

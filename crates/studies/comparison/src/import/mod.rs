@@ -19,10 +19,12 @@ mod difference;
 mod fields;
 mod opening;
 mod pairs;
+mod remedy;
 mod replay;
 mod rows;
 pub(crate) mod section;
 mod subtree;
+mod variants;
 pub(crate) mod words;
 
 pub use answers::{Answer, Largest, Loads, answers, repairs};
@@ -53,6 +55,8 @@ fn of_suite(setup: &Setup) -> Made {
 const READING: &str = "import";
 /// The method of an import.
 const PARSER: &str = "parser";
+/// Why an engine that holds no joint has no answer about the robot.
+const NO_JOINT: &str = "it holds no joint: there is no M and no torque";
 /// The quantities of an imported robot.
 const COMPUTED: [Quantity; 2] = [Quantity::InverseDynamics, Quantity::MassMatrix];
 /// Robots with more degrees of freedom are compared by their descriptions alone. Whole mass matrices at all states would take gigabytes,
@@ -120,6 +124,7 @@ fn imported(asked: &Asked) -> Result<Outcome, NoAnswer> {
     let file = robot.file.as_ref().ok_or_else(|| NoAnswer::Failed("there is no file of this cell".into()))?;
     let reading = engine.read(file)?;
     match asked.quantity() {
+        Ok(_) if reading.description.bodies.is_empty() => Err(NoAnswer::NotOffered(NO_JOINT.into())),
         Err(_) => reading.to_text().map(Outcome::Text).map_err(NoAnswer::Failed),
         Ok(quantity) => answer(engine, &as_read(robot, &reading)?, quantity, &asked.cell.method).map(Outcome::Values),
     }

@@ -1,5 +1,6 @@
 //! The pairs of bodies of two import results.
 
+use super::fields::ROUNDING;
 use featherbench_model::{BodyDescription, Description, JointType, Placement, Uncertain};
 
 /// For each body of `ours`, its partner in `theirs`: by its name, else by its joint's name, else by its place in the tree.
@@ -54,18 +55,39 @@ impl Pairing {
                     None => continue,
                 },
             };
+            // A body without a name in the file has one that each program invents: the same mass on the same joint is the same body.
+            for i in (0..ours.bodies.len()).filter(|&i| ours.bodies[i].parent == above && invented(&ours.bodies[i])).collect::<Vec<_>>() {
+                let same =
+                    |&j: &usize| theirs.bodies[j].parent == theirs_above && !self.taken[j] && alike(&ours.bodies[i], &theirs.bodies[j]);
+                if self.partner[i].is_none()
+                    && let Some(j) = (0..theirs.bodies.len()).find(same)
+                {
+                    self.join(i, j);
+                }
+            }
             let left: Vec<usize> =
                 (0..ours.bodies.len()).filter(|&i| ours.bodies[i].parent == above && self.partner[i].is_none()).collect();
             let right: Vec<usize> =
                 (0..theirs.bodies.len()).filter(|&j| theirs.bodies[j].parent == theirs_above && !self.taken[j]).collect();
             let kind = |body: &BodyDescription| body.joint.kind.name();
-            let alike =
+            let level =
                 left.len() == right.len() && left.iter().zip(&right).all(|(&i, &j)| kind(&ours.bodies[i]) == kind(&theirs.bodies[j]));
-            if alike {
+            if level {
                 left.into_iter().zip(right).for_each(|(i, j)| self.join(i, j));
             }
         }
     }
+}
+
+/// Whether the reference invented the name of a body: the file has none.
+fn invented(body: &BodyDescription) -> bool {
+    body.name.strip_prefix("body ").is_some_and(|number| number.parse::<usize>().is_ok())
+}
+
+/// Whether two bodies have the same kind of joint and, to rounding, the same mass.
+fn alike(a: &BodyDescription, b: &BodyDescription) -> bool {
+    let same_mass = a.mass > 0.0 && (a.mass - b.mass).abs() <= ROUNDING * a.mass;
+    a.joint.kind.name() == b.joint.kind.name() && same_mass
 }
 
 /// The robot with planar and universal joints written as chains of one-dof joints, with massless bodies between: some engines have them so.
