@@ -343,3 +343,51 @@ fn a_base_that_floats_by_another_link_is_told_from_a_joint_that_is_elsewhere() {
     theirs.bodies[root].name = ours.bodies[root].name.clone();
     assert!(found(&ours, &theirs).iter().all(|difference| difference.cause != Cause::OtherRoot));
 }
+
+/// Limits that differ are told with both numbers and their unit. A range that only one side has is told as none on the other.
+#[test]
+fn limits_that_differ_are_told_with_numbers_and_unit() {
+    const DRAWN: u64 = 400;
+    let number = |word: &str| word.parse::<f64>().unwrap_or_else(|error| panic!("{word}: {error}"));
+    let mut told = 0;
+    for k in 0..DRAWN {
+        let mut ours = robot(ROBOTS[k as usize % ROBOTS.len()]);
+        let mut random = Random::new(44, k);
+        let i = random.below(ours.bodies.len());
+        let unit = match ours.bodies[i].joint.kind {
+            JointType::Revolute { .. } => "rad",
+            JointType::Prismatic { .. } => "m",
+            _ => continue,
+        };
+        let mut theirs = ours.clone();
+        // The second is the first in degrees, the first turned about, or another one.
+        let range = [random.uniform(-3.0, 0.0), random.uniform(0.1, 3.0)];
+        let other = match random.below(4) {
+            0 => Some(range.map(f64::to_degrees)),
+            1 => Some([-range[1], -range[0]]),
+            2 => Some([random.uniform(-9.0, -4.0), range[1]]),
+            _ => None,
+        };
+        let joint = &mut ours.bodies[i].joint;
+        (joint.lower, joint.upper) = (vec![range[0]], vec![range[1]]);
+        let joint = &mut theirs.bodies[i].joint;
+        (joint.lower, joint.upper) = other.map_or((vec![], vec![]), |[low, high]| (vec![low], vec![high]));
+        let found = found(&ours, &theirs);
+        assert_eq!(found.len(), 1, "{k}: {found:#?}");
+        assert_eq!((found[0].field, found[0].field.weight()), (Field::Limits, Weight::Information));
+        for (text, range) in [(&found[0].ours, Some(range)), (&found[0].theirs, other)] {
+            let Some(range) = range else {
+                assert_eq!(text, "no limits", "{k}");
+                continue;
+            };
+            let words: Vec<&str> = text.split(' ').collect();
+            assert!(words.len() == 4 && words[1] == "to" && words[3] == unit, "{k}: {text}");
+            // Four digits are written at least: half a unit of the fourth is 5e-4 of the number.
+            for (word, limit) in [(words[0], range[0]), (words[2], range[1])] {
+                assert!((number(word) - limit).abs() <= 5e-4 * limit.abs(), "{k}: {text} for {limit}");
+            }
+        }
+        told += 1;
+    }
+    assert!(told > DRAWN / 2, "{told}");
+}

@@ -93,7 +93,10 @@ impl OfEngine<'_> {
         };
         let effects: Vec<Option<Effect>> = comparison.findings.iter().enumerate().map(alone).collect();
         let mut rows = vec![self.count(&comparison, &effects, reading)];
-        rows.extend(comparison.findings.iter().zip(&effects).map(|(finding, effect)| self.difference(finding, effect.as_ref())));
+        rows.extend(comparison.findings.iter().zip(&effects).map(|(finding, effect)| {
+            let joint = comparison.ours.bodies.iter().find(|body| body.name == finding.difference.body).map(|body| &*body.joint.name);
+            self.difference(finding, joint, effect.as_ref())
+        }));
         let answers: Vec<(&Cell, Result<&[f64], &NoAnswer>)> =
             self.of_engine.iter().map(|(cell, outcome)| (cell, values(outcome))).collect();
         for (cell, answer) in &answers {
@@ -135,12 +138,14 @@ impl OfEngine<'_> {
         Row { params: self.params(more), ..self.row(self.cell, "differences") }.informed(felt as f64)
     }
 
-    fn difference(&self, finding: &SingleDifference, alone: Option<&Effect>) -> Row {
+    /// A difference at a body, with the joint that moves it.
+    fn difference(&self, finding: &SingleDifference, joint: Option<&str>, alone: Option<&Effect>) -> Row {
         let difference = &finding.difference;
         let number = |of: fn(&Effect) -> f64| alone.map(of).filter(|error| error.is_finite());
         let more = json!({
             "cause": difference.cause.name(),
             "class": self.class(finding, alone).name(),
+            "joint": joint,
             "ours": difference.ours,
             "theirs": difference.theirs,
             "weight": difference.field.weight().name(),
