@@ -18,9 +18,10 @@ from dartpy import common, dynamics, utils
 from dartpy.math import Isometry3
 
 from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading, Unsupported
-from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, errors, inertial, mentioned, note, overheard
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, errors, inertial, note, overheard
 from featherbench_oracles.core.robot import Description
 
 # DART's name of a joint's type -> ours
@@ -65,7 +66,8 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, dynamics
         for k in range(joint.getNumDofs()):
             for neutralise in (joint.setDampingCoefficient, joint.setCoulombFriction, joint.setSpringStiffness):
                 neutralise(k, 0.0)
-    notes.extend(mentioned(path))
+    if form == "mjcf":
+        notes.extend(not_compared(path))
     held = Description.read(description)
     moved = [node for node in nodes if node.getParentJoint().getNumDofs()]
     robot = make(held, skeleton, [node.getParentJoint() for node in moved], moved)

@@ -20,9 +20,10 @@ from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
 from featherbench_oracles.core.algebra import Array, skew, symmetric
+from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading
-from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, inertial, mentioned, note, overheard
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, inertial, note, overheard
 from featherbench_oracles.core.robot import Description
 
 TYPES = {
@@ -63,7 +64,8 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Multibod
     if mimics:
         by = f"{plant.num_constraints()} coupler constraints" if plant.num_constraints() else "no constraint"
         notes.append(note("mimic", None, f"{mimics} joints that mimic others are joints of their own with {by}"))
-    notes.extend(mentioned(path))
+    if form == "mjcf":
+        notes.extend(not_compared(path))
     held = Description.read(description)
     return Reading(description, held, notes, make(held, plant, [[joint] for joint in joints if joint.num_velocities()]), {})
 

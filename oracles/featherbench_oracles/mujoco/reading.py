@@ -15,7 +15,7 @@ Positions are MuJoCo's own (`qpos`): a hinge with a `ref` is at its place in the
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,7 @@ import mujoco as mj
 import numpy as np
 
 from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading
 from featherbench_oracles.core.reading import (
@@ -64,7 +65,9 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
         # a second time only if a link was fused: the time of compiling grows with the cube of the number of bodies
         whole_spec, whole = _unfused(path, floating, settings) if model.nbody < given else (spec, model)
     _note_edits(whole_spec, whole, notes)
-    _note_not_compared(model, notes)
+    if form == "mjcf":
+        notes.extend(not_compared(path))
+        _note_armature(model, notes)
     if form == "urdf" and model.neq:
         notes.append(note("mimic", None, f"{model.neq} joints that mimic others are joints of their own with an equality constraint"))
     names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
@@ -378,24 +381,13 @@ def _six(inertia: Array) -> str:
     return "(" + ", ".join(f"{x:.6g}" for x in inertia[np.triu_indices(3)]) + ")"
 
 
-def _extras(model: mj.MjModel) -> Iterator[tuple[str, int]]:
-    """List what the model has besides bodies and joints, with counts."""
-    yield "geoms that can collide", int(((model.geom_contype != 0) | (model.geom_conaffinity != 0)).sum())
-    yield "contact pairs", model.npair
-    yield "tendons", model.ntendon
-    yield "actuators", model.nu
-    yield "equality constraints", model.neq
-    yield "sensors", model.nsensor
-    yield "joint springs", int((model.jnt_stiffness != 0).sum())
-    yield "bodies with gravity compensation", int((model.body_gravcomp != 0).sum())
-    yield "mocap bodies", model.nmocap
-    yield "flexible bodies", model.nflex
-    yield "plugins", model.nplugin
-    yield "fluid forces", int(model.opt.density != 0 or model.opt.viscosity != 0)
-
-
-def _note_not_compared(model: mj.MjModel, notes: list[Header]) -> None:
-    """Note each kind of thing that the neutral quantities do not include."""
-    for kind, count in _extras(model):
-        if count:
-            notes.append(note("not_compared", None, f"{kind}: {count}"))
+def _note_armature(model: mj.MjModel, notes: list[Header]) -> None:
+    """Note the armature that tendons and actuators add to M, which descriptions do not have."""
+    for i in np.flatnonzero(model.tendon_armature).tolist():
+        added = f"armature {model.tendon_armature[i]:.6g} of the tendon times the square of its moments is a part of MuJoCo's M"
+        notes.append(note("tendon_armature", _named(model.tendon(i).name, "tendon", i), added, [model.tendon_armature[i]]))
+    for i in np.flatnonzero(model.actuator_armature).tolist():
+        gear = float(model.actuator_gear[i, 0])
+        total = float(model.actuator_armature[i]) * gear**2
+        added = f"armature {model.actuator_armature[i]:.6g} of the actuator times the square of its gear {gear:.6g} is a part of MuJoCo's M"
+        notes.append(note("actuator_armature", _named(model.actuator(i).name, "actuator", i), added, [total]))

@@ -15,9 +15,10 @@ import numpy as np
 import pinocchio as pin
 
 from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading, Unsupported
-from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard, without_free_armature
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, note, overheard, without_free_armature
 from featherbench_oracles.core.robot import Description
 
 WORKSPACE = 15e3  # bytes of Pinocchio's Data per degree of freedom squared (1.4 GB at 300); without it the process may end
@@ -44,7 +45,8 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Mode
     _add_frames(description, model)
     _note_mimics(path, notes)
     _note_gravity(path, model, notes)
-    notes.extend(mentioned(path))
+    if form == "mjcf":
+        notes.extend(not_compared(path))
     held = Description.read(description)
     for joint, link in zip(list(model.joints)[1:], links, strict=True):
         if any(part.type == "free" for part in link.joints):

@@ -63,12 +63,14 @@ impl RobotSource {
         }
         let told =
             |note: &ImportNote| format!("{}{}", note.about.as_ref().map_or_else(String::new, |about| format!("{about}: ")), note.text);
-        let armature = reading.notes.iter().filter(|note| note.cause == "free_armature");
-        let armature = armature.map(|note| format!("joint '{}': {}", note.about.as_deref().unwrap_or_default(), note.text));
+        let armature = reading.notes.iter().filter(|note| note.cause.ends_with("_armature"));
+        let armature = armature.map(|note| format!("'{}': {}", note.about.as_deref().unwrap_or_default(), note.text));
+        let left: Vec<&str> = reading.notes.iter().filter(|note| note.cause == "not_compared").map(|note| note.text.as_str()).collect();
+        let left = (!left.is_empty()).then(|| left.join("; "));
         let loops = reading.description.warnings().into_iter().filter(|warning| matches!(warning, Warning::Loops { .. }));
         Ok(Self {
             notes: reading.notes.iter().map(told).collect(),
-            remarks: armature.chain(loops.map(|warning| warning.to_string())).collect(),
+            remarks: armature.chain(loops.map(|warning| warning.to_string())).chain(left).collect(),
             keyframes: reading.keyframes,
             ..Self::of_file(reading.description, file)
         })

@@ -206,6 +206,7 @@ fn remedy(largest: &Largest) -> String {
         "mimic" => format!("take the joint of '{body}' as free, or couple it by yourself: engines treat mimic joints in different ways"),
         "merged" | "dropped" => format!("do not count on a degree of freedom at '{body}': this engine fixes it"),
         "geometry" => format!("write an inertial of '{body}', so that no shape gives its mass"),
+        "added_armature" => format!("add the armature of '{body}' to this engine's M by yourself, or take it out of the file"),
         "unsupported" => format!("set the {} of '{body}' by the engine's interface after loading", field.replace('_', " ")),
         _ if body.is_empty() => format!("set the robot's {} to {ours} after loading", field.replace('_', " ")),
         _ => format!("set the {} of '{body}' to {ours} after loading", field.replace('_', " ")),

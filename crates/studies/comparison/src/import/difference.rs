@@ -114,6 +114,8 @@ pub enum Cause {
     Mimic,
     /// Not imported: the parser does not know the element.
     Unsupported,
+    /// The armature of a tendon or an actuator is a part of M in one of the engines only.
+    AddedArmature,
     /// A link without an inertial was given the engine's own: one kilogram and one kg·m² about each axis.
     DefaultInertia,
     /// The centre of mass, or one of its coordinates, with the other sign.
@@ -231,6 +233,7 @@ impl Cause {
             Self::Edited => "edited",
             Self::Mimic => "mimic",
             Self::Unsupported => "unsupported",
+            Self::AddedArmature => "added_armature",
             Self::DefaultInertia => "default_inertia",
             Self::ComSign => "com_sign",
             Self::OffDiagonals => "off_diagonals",

@@ -83,7 +83,7 @@ impl OfEngine<'_> {
     fn read(&self, reading: &Import) -> Vec<Row> {
         let links = self.robot.file.as_ref().map_or(&[][..], |file| &file.links);
         let mut comparison = Comparison::of(&self.robot.description, &reading.description, links, &reading.notes);
-        comparison.findings.extend(self.compiler.into_iter().flat_map(|notes| armature::on_free_joints(notes, &reading.notes)));
+        comparison.findings.extend(self.compiler.into_iter().flat_map(|notes| armature::beside_descriptions(notes, &reading.notes)));
         let own = alterable(&comparison, self.robot);
         let states = &self.robot.states;
         let afforded = (WORK / (states.count() * states.nv * states.nv).max(1)).max(LEAST_ALONE);
