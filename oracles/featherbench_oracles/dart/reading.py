@@ -17,6 +17,7 @@ import numpy as np
 from dartpy import common, dynamics, utils
 from dartpy.math import Isometry3
 
+from featherbench_oracles.core import mimics
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.messages import Header
@@ -59,6 +60,11 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, dynamics
     description = describe(skeleton.getName() or path.stem, skeleton.getGravity(), _links(nodes))
     description["frames"] = [frame for frame in description["frames"] if "/" not in frame["name"]]
     _note(path, nodes, notes)
+    if form == "urdf":
+        joints = [node.getParentJoint() for node in nodes]
+        driven = [joint.getName() for joint in joints if joint.getNumDofs() and joint.getActuatorType() == dynamics.ActuatorType.MIMIC]
+        tied: dict[str, mimics.Mimic | None] = dict.fromkeys(driven)
+        notes.extend(mimics.tell(path, tied, "a joint of its own, driven by an actuator as a mimic", "a joint of its own"))
     if form == "urdf" and base == "free" and not any(isinstance(joint, dynamics.FreeJoint) for joint in skeleton.getJoints()):
         notes.append(note("root_welded", None, "DART takes a link called world for the world"))
     for joint in skeleton.getJoints():
@@ -147,10 +153,7 @@ def _axes(joint: dynamics.Joint, kind: str) -> Array:
 
 
 def _note(path: Path, nodes: list[dynamics.BodyNode], notes: list[Header]) -> None:
-    """Note joints that mimic, and links of a URDF whose mass is not the file's."""
-    for joint in elements(path, "joint"):
-        if joint.find("mimic") is not None:
-            notes.append(note("mimic", joint.get("name"), "this joint mimics another; DART makes it a joint of its own, driven as a mimic"))
+    """Note links of a URDF whose mass is not the file's."""
     held = {node.getName(): node.getInertia() for node in nodes}
     for link in elements(path, "link"):
         name, mass = link.get("name"), link.find("inertial/mass")

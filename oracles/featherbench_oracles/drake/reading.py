@@ -19,6 +19,7 @@ from pydrake.multibody import tree
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
+from featherbench_oracles.core import mimics
 from featherbench_oracles.core.algebra import Array, skew, symmetric
 from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.messages import Header
@@ -58,16 +59,23 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Multibod
     own = {after.name for before, after in zip(links, named, strict=True) if before.name != after.name}  # not links of the file
     description["frames"] = [frame for frame in description["frames"] if frame["name"] not in own]
     _note_edits(plant, path, notes)
-    if plant.num_constraints():
+    if form == "urdf":
+        notes.extend(_mimics(path, plant))
+    elif plant.num_constraints():
         notes.append(note("not_compared", None, f"constraints: {plant.num_constraints()}"))
-    mimics = sum(joint.find("mimic") is not None for joint in elements(path, "joint"))
-    if mimics:
-        by = f"{plant.num_constraints()} coupler constraints" if plant.num_constraints() else "no constraint"
-        notes.append(note("mimic", None, f"{mimics} joints that mimic others are joints of their own with {by}"))
     if form == "mjcf":
         notes.extend(not_compared(path))
     held = Description.read(description)
     return Reading(description, held, notes, make(held, plant, [[joint] for joint in joints if joint.num_velocities()]), {})
+
+
+def _mimics(path: Path, plant: MultibodyPlant) -> list[Header]:
+    """Note what became of each mimic. A plant gives the number of its constraints, and not what they tie."""
+    followers = [name for name, _ in mimics.written(path)]
+    count = plant.num_constraints()
+    held: dict[str, mimics.Mimic | None] = dict.fromkeys(followers if count == len(followers) else ())
+    left = f"Drake has {count} coupler constraints for {len(followers)} mimics, and does not tell which"
+    return mimics.tell(path, held, "a joint of its own with a coupler constraint", left if count else "Drake has no constraint for it")
 
 
 # ---- the plant -------------------------------------------------------------------------------------------------------------------

@@ -23,6 +23,7 @@ from typing import Any
 import mujoco as mj
 import numpy as np
 
+from featherbench_oracles.core import mimics
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.messages import Header
@@ -68,8 +69,8 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
     if form == "mjcf":
         notes.extend(not_compared(path))
         _note_armature(model, notes)
-    if form == "urdf" and model.neq:
-        notes.append(note("mimic", None, f"{model.neq} joints that mimic others are joints of their own with an equality constraint"))
+    if form == "urdf":
+        notes.extend(mimics.tell(path, _mimics(model), "a joint of its own with an equality constraint", "a joint of its own"))
     names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
     links = without_free_armature([_link(spec, model, names, i) for i in range(1, model.nbody)], notes)
     gravity = np.zeros(3) if model.opt.disableflags & mj.mjtDisableBit.mjDSBL_GRAVITY else model.opt.gravity
@@ -340,6 +341,17 @@ def _without_extras(model: mj.MjModel) -> None:
         numbers[:] = 0
     if changed:  # updates what depends on them; its time grows with the cube of the number of bodies
         mj.mj_setConst(model, mj.MjData(model))
+
+
+def _mimics(model: mj.MjModel) -> dict[str, mimics.Mimic | None]:
+    """Find the joints that follow others by an equality, with the coefficients. One with higher powers is no mimic of a URDF."""
+    found: dict[str, mimics.Mimic | None] = {}
+    for k in range(model.neq):
+        if model.eq_type[k] == mj.mjtEq.mjEQ_JOINT and model.eq_obj2id[k] >= 0 and model.eq_active0[k]:
+            follower, leader = (model.joint(int(ids[k])) for ids in (model.eq_obj1id, model.eq_obj2id))
+            offset, multiplier, *_ = model.eq_data[k, :5].tolist()
+            found[follower.name] = mimics.Mimic(leader.name, multiplier, offset)
+    return found
 
 
 # ---- notes -----------------------------------------------------------------------------------------------------------------------

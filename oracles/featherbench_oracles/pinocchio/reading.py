@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from featherbench_oracles.core import mimics
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.messages import Header
@@ -43,7 +44,8 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Mode
     links = without_free_armature([_link(model, i, path) for i in range(1, model.njoints)], notes)
     description = describe(model.name or path.stem, model.gravity.linear, links)
     _add_frames(description, model)
-    _note_mimics(path, notes)
+    if form == "urdf":
+        notes.extend(_mimics(path, model))
     _note_gravity(path, model, notes)
     if form == "mjcf":
         notes.extend(not_compared(path))
@@ -204,10 +206,17 @@ def _add_frames(description: Header, model: pin.Model) -> None:
             description["frames"].append({"name": frame.name, "body": body, "placement": place.json()})
 
 
-def _note_mimics(path: Path, notes: list[Header]) -> None:
-    """Note each joint that mimics another: Pinocchio reads it as an independent joint by default."""
-    names = [joint.get("name") or "" for joint in elements(path, "joint") if joint.find("mimic") is not None]
-    notes.extend(note("mimic", name, "this joint mimics another; Pinocchio reads it as a joint of its own") for name in names)
+def _mimics(path: Path, model: pin.Model) -> list[Header]:
+    """Note each joint that mimics another. By default Pinocchio reads it as an independent joint."""
+    if not any(mimics.written(path)):
+        return []
+    try:
+        nv = pin.buildModelFromUrdf(str(path), mimic=True).nv
+        asked = f"with mimic=True the robot has {nv} degrees of freedom"
+    except ValueError as reason:
+        asked = f"with mimic=True it refuses the file: {str(reason).strip().splitlines()[-1].removeprefix('hint: ')}"
+    held: dict[str, mimics.Mimic | None] = dict.fromkeys(model.names[joint] for joint in model.mimicking_joints)
+    return mimics.tell(path, held, "a joint that follows", f"by default Pinocchio reads an independent joint; {asked}")
 
 
 def _note_gravity(path: Path, model: pin.Model, notes: list[Header]) -> None:

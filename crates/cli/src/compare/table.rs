@@ -109,11 +109,21 @@ fn as_read(rows: &[&Row]) -> String {
     for (_, params) in told.iter().filter(|(row, _)| row.quantity == "dof_order") {
         text += &format!("      other order of joints: {} where the file has {}\n", some(&params["theirs"]), some(&params["ours"]));
     }
+    text += &tied(&classes);
     text += &together(told.iter().copied().filter(|(row, _)| row.quantity == "limits"));
     if rows.iter().all(|row| !["id", "mass_matrix"].contains(&row.quantity.as_str())) {
         return text + &format!("    replayed            not asked: the limit is {LARGEST} dofs\n");
     }
     text + &explained(rows)
+}
+
+/// What the engine makes of joints that mimic others and that it ties as written, one line for each way.
+fn tied(params: &Value) -> String {
+    let mut ways: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for note in params["notes"].as_array().into_iter().flatten().filter(|note| note["cause"] == "mimic") {
+        ways.entry(note["text"].as_str().unwrap_or_default()).or_default().push(note["about"].as_str().unwrap_or_default());
+    }
+    ways.iter().map(|(way, joints)| format!("      mimic {}: {way}\n", joints.join(", "))).collect()
 }
 
 fn line(row: &Row, params: &Value) -> String {

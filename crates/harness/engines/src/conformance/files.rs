@@ -27,7 +27,7 @@ const AS_READ: [Quantity; 6] = [
     Quantity::KineticEnergy,
 ];
 /// The causes that a note may give.
-const CAUSES: [&str; 16] = [
+const CAUSES: [&str; 18] = [
     "mass_edited",
     "com_edited",
     "inertia_edited",
@@ -41,6 +41,8 @@ const CAUSES: [&str; 16] = [
     "fused",
     "root_welded",
     "mimic",
+    "mimic_otherwise",
+    "mimic_dropped",
     "gravity_ignored",
     "not_compared",
     "warning",

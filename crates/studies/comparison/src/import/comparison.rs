@@ -160,6 +160,7 @@ fn shared(
         }
     }
     super::context::explain(ours, (theirs, &partner), &written, &mut findings, reach);
+    findings.extend(mimics(ours, notes));
     findings.extend(gravity(ours, theirs));
     findings.extend(order(ours, &partner));
     findings
@@ -199,6 +200,19 @@ fn about<'a>(ours: &Description, i: usize, theirs: &BodyDescription, notes: &'a 
         (None, _) => true,
     };
     notes.iter().filter(concerns).collect()
+}
+
+/// The joints that follow another one in the file, and not in the engine: by its usual way of reading it computes other physics. That of the
+/// tree is compared without mimics, so the reduced dynamics GᵀMG and Gᵀh of an engine that ties them as written follow from it.
+fn mimics(ours: &Description, notes: &[ImportNote]) -> impl Iterator<Item = SingleDifference> {
+    notes.iter().filter(|note| ["mimic_dropped", "mimic_otherwise"].contains(&note.cause.as_str())).map(|note| {
+        let joint = note.about.as_deref().unwrap_or_default();
+        let body = ours.bodies.iter().find(|body| body.joint.name == joint).map_or(joint, |body| &body.name);
+        let theirs = if note.cause == "mimic_dropped" { "a joint of its own" } else { "tied otherwise" };
+        let mut finding = whole(body, Field::Mimic, "follows another joint".into(), theirs.into(), Cause::Mimic);
+        finding.difference.account = Some(format!("joint '{joint}': {}", note.text));
+        finding
+    })
 }
 
 fn gravity(ours: &Description, theirs: &Description) -> Option<SingleDifference> {

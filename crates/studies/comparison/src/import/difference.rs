@@ -52,6 +52,8 @@ pub enum Field {
     Gravity,
     /// The order of the degrees of freedom.
     DofOrder,
+    /// That the joint follows another one.
+    Mimic,
     /// Limits of position.
     Limits,
 }
@@ -150,6 +152,7 @@ impl Field {
             Self::Friction => "friction",
             Self::Gravity => "gravity",
             Self::DofOrder => "dof_order",
+            Self::Mimic => "mimic",
             Self::Limits => "limits",
         }
     }

@@ -103,7 +103,7 @@ pub(super) fn size(field: Field, ours: &BodyDescription, theirs: &BodyDescriptio
                 0.0
             }
         }
-        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder => 0.0,
+        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder | Field::Mimic => 0.0,
     }
 }
 
@@ -129,7 +129,7 @@ pub(super) fn copy(field: Field, from: &BodyDescription, to: &mut BodyDescriptio
             to.joint.lower.clone_from(&joint.lower);
             to.joint.upper.clone_from(&joint.upper);
         }
-        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder => {}
+        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder | Field::Mimic => {}
     }
 }
 
@@ -160,7 +160,7 @@ pub(super) fn written(field: Field, body: &BodyDescription, size: f64) -> String
         Field::Damping => list(&joint.damping),
         Field::Friction => list(&joint.friction),
         Field::Limits => limits_written(joint, size),
-        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder => String::new(),
+        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder | Field::Mimic => String::new(),
     }
 }
 
