@@ -17,7 +17,7 @@ import numpy as np
 from dartpy import common, dynamics, utils
 from dartpy.math import Isometry3
 
-from featherbench_oracles.core import mimics
+from featherbench_oracles.core import bad_values, mimics
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.messages import Header
@@ -57,7 +57,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, dynamics
         said = errors(notes) or (notes[-1]["text"] if notes else "it does not say why")
         raise ValueError(f"DART does not read {path.name}: {said}")
     nodes = skeleton.getBodyNodes()
-    description = describe(skeleton.getName() or path.stem, skeleton.getGravity(), _links(nodes))
+    description = describe(skeleton.getName() or path.stem, skeleton.getGravity(), bad_values.left_out(path, form, _links(nodes), notes))
     description["frames"] = [frame for frame in description["frames"] if "/" not in frame["name"]]
     _note(path, nodes, notes)
     if form == "urdf":

@@ -19,7 +19,7 @@ from pydrake.multibody import tree
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
-from featherbench_oracles.core import mimics
+from featherbench_oracles.core import bad_values, mimics
 from featherbench_oracles.core.algebra import Array, skew, symmetric
 from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.messages import Header
@@ -55,7 +55,9 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Multibod
     names = [plant.GetModelInstanceName(tree.ModelInstanceIndex(i)) for i in range(2, plant.num_model_instances())]
     links = _links(plant, joints, damping)
     named = _chained(links, path) if form == "mjcf" else links
-    description = describe(next(iter(names), path.stem), plant.gravity_field().gravity_vector(), named)
+    description = describe(
+        next(iter(names), path.stem), plant.gravity_field().gravity_vector(), bad_values.left_out(path, form, named, notes)
+    )
     own = {after.name for before, after in zip(links, named, strict=True) if before.name != after.name}  # not links of the file
     description["frames"] = [frame for frame in description["frames"] if frame["name"] not in own]
     _note_edits(plant, path, notes)

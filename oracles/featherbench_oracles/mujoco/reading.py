@@ -23,7 +23,7 @@ from typing import Any
 import mujoco as mj
 import numpy as np
 
-from featherbench_oracles.core import mimics
+from featherbench_oracles.core import bad_values, mimics
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.messages import Header
@@ -74,10 +74,10 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
     names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
     links = without_free_armature([_link(spec, model, names, i) for i in range(1, model.nbody)], notes)
     gravity = np.zeros(3) if model.opt.disableflags & mj.mjtDisableBit.mjDSBL_GRAVITY else model.opt.gravity
-    description = describe(spec.modelname or path.stem, gravity, links)
+    description = describe(spec.modelname or path.stem, gravity, bad_values.left_out(path, form, links, notes))
     written = None
     if form == "mjcf" and (_balance in settings or _bound in settings):
-        written = describe(spec.modelname or path.stem, gravity, _as_written(whole_spec, whole))
+        written = describe(spec.modelname or path.stem, gravity, bad_values.left_out(path, form, _as_written(whole_spec, whole), []))
     if floating and not any(body["joint"]["type"] == "free" for body in description["bodies"]):
         notes.append(note("root_welded", None, "the file has no single root link that could float"))
     _add_fused_frames(description, names, whole, notes)
@@ -336,9 +336,11 @@ def _without_extras(model: mj.MjModel) -> None:
     for j in range(model.njnt):
         if model.jnt_type[j] == mj.mjtJoint.mjJNT_FREE:
             held.append(model.dof_armature[model.jnt_dofadr[j] : model.jnt_dofadr[j] + 6])
-    changed = any(numbers.any() for numbers in held)
+    wrong = bad_values.bad(model.dof_armature)
+    changed = wrong.any() or any(numbers.any() for numbers in held)
     for numbers in held:
         numbers[:] = 0
+    model.dof_armature[wrong] = 0
     if changed:  # updates what depends on them; its time grows with the cube of the number of bodies
         mj.mj_setConst(model, mj.MjData(model))
 

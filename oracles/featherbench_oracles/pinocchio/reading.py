@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from featherbench_oracles.core import mimics
+from featherbench_oracles.core import bad_values, mimics
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.messages import Header
@@ -42,7 +42,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Mode
             model = pin.buildModelFromUrdf(str(path))
     affordable(model.nv)
     links = without_free_armature([_link(model, i, path) for i in range(1, model.njoints)], notes)
-    description = describe(model.name or path.stem, model.gravity.linear, links)
+    description = describe(model.name or path.stem, model.gravity.linear, bad_values.left_out(path, form, links, notes))
     _add_frames(description, model)
     if form == "urdf":
         notes.extend(_mimics(path, model))
@@ -53,6 +53,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Mode
     for joint, link in zip(list(model.joints)[1:], links, strict=True):
         if any(part.type == "free" for part in link.joints):
             model.armature[joint.idx_v : joint.idx_v + joint.nv] = 0
+    model.armature[bad_values.bad(model.armature)] = 0
     return Reading(description, held, notes, make(held, model, _turning(model)), {})
 
 

@@ -110,6 +110,9 @@ fn as_read(rows: &[&Row]) -> String {
         text += &format!("      other order of joints: {} where the file has {}\n", some(&params["theirs"]), some(&params["ours"]));
     }
     text += &tied(&classes);
+    for note in classes["notes"].as_array().into_iter().flatten().filter(|note| note["cause"] == "bad_value") {
+        text += &format!("      a bad value of the file: {}\n", note["text"].as_str().unwrap_or_default());
+    }
     text += &together(told.iter().copied().filter(|(row, _)| row.quantity == "limits"));
     if rows.iter().all(|row| !["id", "mass_matrix"].contains(&row.quantity.as_str())) {
         return text + &format!("    replayed            not asked: the limit is {LARGEST} dofs\n");

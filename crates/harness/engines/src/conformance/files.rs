@@ -27,7 +27,7 @@ const AS_READ: [Quantity; 6] = [
     Quantity::KineticEnergy,
 ];
 /// The causes that a note may give.
-const CAUSES: [&str; 18] = [
+const CAUSES: [&str; 19] = [
     "mass_edited",
     "com_edited",
     "inertia_edited",
@@ -40,6 +40,7 @@ const CAUSES: [&str; 18] = [
     "actuator_armature",
     "fused",
     "root_welded",
+    "bad_value",
     "mimic",
     "mimic_otherwise",
     "mimic_dropped",
