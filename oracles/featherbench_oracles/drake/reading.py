@@ -61,6 +61,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Multibod
     own = {after.name for before, after in zip(links, named, strict=True) if before.name != after.name}  # not links of the file
     description["frames"] = [frame for frame in description["frames"] if frame["name"] not in own]
     _note_edits(plant, path, notes)
+    _note_rotors(plant, notes)
     if form == "urdf":
         notes.extend(_mimics(path, plant))
     elif plant.num_constraints():
@@ -78,6 +79,15 @@ def _mimics(path: Path, plant: MultibodyPlant) -> list[Header]:
     held: dict[str, mimics.Mimic | None] = dict.fromkeys(followers if count == len(followers) else ())
     left = f"Drake has {count} coupler constraints for {len(followers)} mimics, and does not tell which"
     return mimics.tell(path, held, "a joint of its own with a coupler constraint", left if count else "Drake has no constraint for it")
+
+
+def _note_rotors(plant: MultibodyPlant, notes: list[Header]) -> None:
+    """Note each actuator that reflects the inertia of its rotor to its joint by a gear."""
+    for motor in (plant.get_joint_actuator(i) for i in plant.GetJointActuatorIndices()):
+        rotor, gear = motor.default_rotor_inertia(), motor.default_gear_ratio()
+        if rotor and gear != 1:
+            held = f"the actuator '{motor.name()}' has the rotor inertia {rotor:.6g} and the gear ratio {gear:.6g}: {rotor * gear**2:.6g}"
+            notes.append(note("rotor_inertia", motor.joint().name(), held, [rotor, gear]))
 
 
 # ---- the plant -------------------------------------------------------------------------------------------------------------------

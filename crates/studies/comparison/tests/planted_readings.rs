@@ -2,6 +2,7 @@
 //!
 //! Four hundred differences, drawn by seed over ten committed robots, as an engine's parser might cause them.
 
+use featherbench_bench::ImportNote;
 use featherbench_comparison::import::{Cause, Comparison, Difference, Field, Weight};
 use featherbench_formats::neutral;
 use featherbench_model::{BodyDescription, Description, JointType, Placement};
@@ -390,4 +391,35 @@ fn limits_that_differ_are_told_with_numbers_and_unit() {
         told += 1;
     }
     assert!(told > DRAWN / 2, "{told}");
+}
+
+/// The rotor of an actuator is named as the cause of an armature where its numbers give it, and not where they give another one.
+#[test]
+fn a_rotor_is_named_only_where_its_numbers_give_the_armature() {
+    const DRAWN: u64 = 400;
+    let mut named = 0;
+    for k in 0..DRAWN {
+        let ours = robot(ROBOTS[k as usize % ROBOTS.len()]);
+        let mut random = Random::new(45, k);
+        let turning = |body: &BodyDescription| matches!(body.joint.kind, JointType::Revolute { .. });
+        let hinges: Vec<usize> = (0..ours.bodies.len()).filter(|&i| turning(&ours.bodies[i])).collect();
+        let i = hinges[random.below(hinges.len())];
+        let (rotor, gear) = (random.uniform(1e-6, 1e-3), random.uniform(2.0, 200.0));
+        let right = random.below(2) == 0;
+        let mut theirs = ours.clone();
+        let joint = &mut theirs.bodies[i].joint;
+        let before = joint.armature.first().copied().unwrap_or(0.0);
+        joint.armature = vec![before + rotor * gear * gear * if right { 1.0 } else { random.uniform(1.01, 2.0) }];
+        let note = ImportNote {
+            cause: "rotor_inertia".into(),
+            about: Some(joint.name.clone()),
+            text: "a rotor".into(),
+            numbers: vec![rotor, gear],
+        };
+        let found: Vec<Difference> = Comparison::of(&ours, &theirs, &[], &[note]).differences().cloned().collect();
+        assert_eq!(found.len(), 1, "{k}: {found:#?}");
+        assert_eq!((found[0].field, found[0].cause == Cause::RotorInertia), (Field::Armature, right), "{k}: {found:#?}");
+        named += usize::from(right);
+    }
+    assert!(named > 100, "{named}");
 }

@@ -27,7 +27,7 @@ const AS_READ: [Quantity; 6] = [
     Quantity::KineticEnergy,
 ];
 /// The causes that a note may give.
-const CAUSES: [&str; 19] = [
+const CAUSES: [&str; 20] = [
     "mass_edited",
     "com_edited",
     "inertia_edited",
@@ -41,6 +41,7 @@ const CAUSES: [&str; 19] = [
     "fused",
     "root_welded",
     "bad_value",
+    "rotor_inertia",
     "mimic",
     "mimic_otherwise",
     "mimic_dropped",

@@ -118,6 +118,8 @@ pub enum Cause {
     Unsupported,
     /// The armature of a tendon or an actuator is a part of M in one of the engines only.
     AddedArmature,
+    /// The inertia of an actuator's rotor times the gear ratio squared.
+    RotorInertia,
     /// A link without an inertial was given the engine's own: one kilogram and one kg·m² about each axis.
     DefaultInertia,
     /// The centre of mass, or one of its coordinates, with the other sign.
@@ -237,6 +239,7 @@ impl Cause {
             Self::Mimic => "mimic",
             Self::Unsupported => "unsupported",
             Self::AddedArmature => "added_armature",
+            Self::RotorInertia => "rotor_inertia",
             Self::DefaultInertia => "default_inertia",
             Self::ComSign => "com_sign",
             Self::OffDiagonals => "off_diagonals",

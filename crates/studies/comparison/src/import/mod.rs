@@ -22,6 +22,7 @@ mod pairs;
 mod replay;
 mod rows;
 pub(crate) mod section;
+mod singular;
 mod subtree;
 pub(crate) mod words;
 
@@ -29,6 +30,7 @@ pub use answers::{Answer, Largest, Loads, answers, repairs};
 pub use comparison::{Comparison, SingleDifference};
 pub use difference::{Cause, Class, Difference, Field, Weight};
 pub use replay::Effect;
+pub use singular::singular;
 pub use subtree::{SubTree, bound};
 
 use featherbench_bench::{

@@ -284,6 +284,8 @@ fn phrase(name: &str) -> &str {
         "geometry" => "computed from the shape of the body at 1000 kg/m³",
         "edited" => "replaced by the parser, as it says itself",
         "mimic" => "the joint follows another one",
+        "added_armature" => "the armature of a tendon or an actuator",
+        "rotor_inertia" => "the inertia of an actuator's rotor times the gear ratio squared",
         "unsupported" => "not read",
         other => other,
     }
