@@ -397,11 +397,11 @@ def _six(inertia: Array) -> str:
 
 def _note_armature(model: mj.MjModel, notes: list[Header]) -> None:
     """Note the armature that tendons and actuators add to M, which descriptions do not have."""
+    part = "is a part of MuJoCo's M; it is left out"
     for i in np.flatnonzero(model.tendon_armature).tolist():
-        added = f"armature {model.tendon_armature[i]:.6g} of the tendon times the square of its moments is a part of MuJoCo's M"
+        added = f"armature {model.tendon_armature[i]:.6g} of the tendon times the square of its moments {part}"
         notes.append(note("tendon_armature", _named(model.tendon(i).name, "tendon", i), added, [model.tendon_armature[i]]))
     for i in np.flatnonzero(model.actuator_armature).tolist():
-        gear = float(model.actuator_gear[i, 0])
-        total = float(model.actuator_armature[i]) * gear**2
-        added = f"armature {model.actuator_armature[i]:.6g} of the actuator times the square of its gear {gear:.6g} is a part of MuJoCo's M"
-        notes.append(note("actuator_armature", _named(model.actuator(i).name, "actuator", i), added, [total]))
+        armature, gear = float(model.actuator_armature[i]), float(model.actuator_gear[i, 0])
+        added = f"armature {armature:.6g} of the actuator times the square of its gear {gear:.6g} {part}"
+        notes.append(note("actuator_armature", _named(model.actuator(i).name, "actuator", i), added, [armature * gear**2]))

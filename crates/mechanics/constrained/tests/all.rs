@@ -6,6 +6,7 @@ mod errors;
 mod files;
 mod graph;
 mod laws;
+mod planar;
 mod solve;
 mod squeezer;
 mod stabilise;

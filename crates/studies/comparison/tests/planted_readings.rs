@@ -423,3 +423,36 @@ fn a_rotor_is_named_only_where_its_numbers_give_the_armature() {
     }
     assert!(named > 100, "{named}");
 }
+
+/// Another order names only what the file names: a joint without a name is told by its body.
+#[test]
+fn another_order_names_no_joint_that_the_file_does_not_name() {
+    const DRAWN: u64 = 240;
+    let mut told = 0;
+    for k in 0..DRAWN {
+        let mut ours = robot(ROBOTS[k as usize % ROBOTS.len()]);
+        let mut random = Random::new(46, k);
+        for i in 0..ours.bodies.len() {
+            if random.below(2) == 0 {
+                // As MuJoCo's reading names a joint that has no name.
+                ours.bodies[i].joint.name = format!("joint {i}");
+            }
+        }
+        let mut theirs = ours.clone();
+        let (_, field, _) = sow(&mut theirs, Plant::Order, &mut random);
+        // A robot without siblings has one order alone.
+        if field != Field::DofOrder {
+            continue;
+        }
+        let found: Vec<Difference> = found(&ours, &theirs).into_iter().filter(|difference| difference.field == field).collect();
+        assert_eq!(found.len(), 1, "{k}");
+        for name in found[0].ours.split(", ").chain(found[0].theirs.split(", ")) {
+            let body = name.strip_prefix("that of ");
+            let known = |body: &BodyDescription| body.joint.name == name && !name.starts_with("joint ");
+            let named = body.map_or_else(|| ours.bodies.iter().any(known), |body| ours.bodies.iter().any(|other| other.name == body));
+            assert!(named, "{k}: {name} in {found:#?}");
+            told += usize::from(body.is_some());
+        }
+    }
+    assert!(told > 100, "{told}");
+}

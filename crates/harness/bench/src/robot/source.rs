@@ -72,8 +72,10 @@ impl RobotSource {
         if let Some(written) = reading.written.take() {
             reading.description = written.canonical().map_err(|error| bad(error.to_string()))?;
         }
-        let told =
-            |note: &ImportNote| format!("{}{}", note.about.as_ref().map_or_else(String::new, |about| format!("{about}: ")), note.text);
+        let told = |note: &ImportNote| {
+            let left = if note.cause == "not_compared" { "left out: " } else { "" };
+            format!("{left}{}{}", note.about.as_ref().map_or_else(String::new, |about| format!("{about}: ")), note.text)
+        };
         let armature = reading.notes.iter().filter(|note| note.cause.ends_with("_armature"));
         let bad = reading.notes.iter().filter(|note| note.cause == "bad_value");
         let bad = bad.map(|note| note.text.split("; this engine").next().unwrap_or_default().to_owned());

@@ -227,6 +227,17 @@ fn gravity(ours: &Description, theirs: &Description) -> Option<SingleDifference>
     })
 }
 
+/// A joint by what the file names: readings give joints and bodies without a name their kind and number, and nobody finds these in the file.
+fn in_file(body: &BodyDescription) -> String {
+    let numbered = |name: &str, kind: &str| name.strip_prefix(kind).is_some_and(|rest| rest.trim_start().parse::<usize>().is_ok());
+    let (joint, body) = (&body.joint.name, &body.name);
+    match (joint.is_empty() || numbered(joint, "joint "), numbered(body, "body ")) {
+        (false, _) => joint.clone(),
+        (true, false) => format!("that of {body}"),
+        (true, true) => format!("that of the file's {body}, which has no name"),
+    }
+}
+
 /// A difference in the order of joints, described from the first to the last that is elsewhere.
 fn order(ours: &Description, partner: &[Option<usize>]) -> Option<SingleDifference> {
     let mut sorted: Vec<(usize, usize)> = partner.iter().enumerate().filter_map(|(i, j)| Some(((*j)?, i))).collect();
@@ -236,7 +247,7 @@ fn order(ours: &Description, partner: &[Option<usize>]) -> Option<SingleDifferen
     let moved = own.iter().zip(&theirs).filter(|(a, b)| a != b).count();
     let (first, last) = (own.iter().zip(&theirs).position(|(a, b)| a != b)?, own.iter().zip(&theirs).rposition(|(a, b)| a != b)?);
     let text = |list: &[usize]| {
-        let name = |&i: &usize| ours.bodies[i].joint.name.as_str();
+        let name = |&i: &usize| in_file(&ours.bodies[i]);
         list[first..=last].iter().map(name).collect::<Vec<_>>().join(", ")
     };
     let mut finding = whole("", Field::DofOrder, text(&own), text(&theirs), Cause::Order);
