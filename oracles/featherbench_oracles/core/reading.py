@@ -365,24 +365,6 @@ def elements(path: Path, tag: str) -> Iterator[ElementTree.Element]:
     return ElementTree.parse(path).getroot().iter(tag)
 
 
-def mentioned(path: Path) -> list[Header]:
-    """Note what an MJCF has besides bodies and joints, for an engine that does not tell what it made of this.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    list of dict
-        A note for each kind in the file.
-    """
-    kinds = ("contact", "tendon", "actuator", "equality", "sensor", "keyframe")
-    counts = {kind: sum(len(section) for section in ElementTree.parse(path).getroot().findall(kind)) for kind in kinds}
-    return [note("not_compared", None, f"elements of <{kind}>: {count}") for kind, count in counts.items() if count]
-
-
 _COLOURS = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")  # the escape sequences of terminals
 
 

@@ -17,11 +17,13 @@ import numpy as np
 from dartpy import common, dynamics, utils
 from dartpy.math import Isometry3
 
+from featherbench_oracles.core import bad_values, mimics
 from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.loaded import loaded
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading, Unsupported
-from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, errors, inertial, mentioned, note, overheard
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, errors, inertial, note, overheard
 from featherbench_oracles.core.robot import Description
 
 # DART's name of a joint's type -> ours
@@ -56,9 +58,15 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, dynamics
         said = errors(notes) or (notes[-1]["text"] if notes else "it does not say why")
         raise ValueError(f"DART does not read {path.name}: {said}")
     nodes = skeleton.getBodyNodes()
-    description = describe(skeleton.getName() or path.stem, skeleton.getGravity(), loaded(path, _links(nodes), notes))
+    links = bad_values.left_out(path, form, loaded(path, _links(nodes), notes), notes)
+    description = describe(skeleton.getName() or path.stem, skeleton.getGravity(), links)
     description["frames"] = [frame for frame in description["frames"] if "/" not in frame["name"]]
     _note(path, nodes, notes)
+    if form == "urdf":
+        joints = [node.getParentJoint() for node in nodes]
+        driven = [joint.getName() for joint in joints if joint.getNumDofs() and joint.getActuatorType() == dynamics.ActuatorType.MIMIC]
+        tied: dict[str, mimics.Mimic | None] = dict.fromkeys(driven)
+        notes.extend(mimics.tell(path, tied, "a joint of its own, driven by an actuator as a mimic", "a joint of its own"))
     if form == "urdf" and base == "free" and not any(isinstance(joint, dynamics.FreeJoint) for joint in skeleton.getJoints()):
         notes.append(note("root_welded", None, "DART takes a link called world for the world"))
     for joint in skeleton.getJoints():
@@ -66,7 +74,8 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, dynamics
         for k in range(joint.getNumDofs()):
             for neutralise in (joint.setDampingCoefficient, joint.setCoulombFriction, joint.setSpringStiffness):
                 neutralise(k, 0.0)
-    notes.extend(mentioned(path))
+    if form == "mjcf":
+        notes.extend(not_compared(path))
     held = Description.read(description)
     moved = [node for node in nodes if node.getParentJoint().getNumDofs()]
     robot = make(held, skeleton, [node.getParentJoint() for node in moved], moved)
@@ -146,10 +155,7 @@ def _axes(joint: dynamics.Joint, kind: str) -> Array:
 
 
 def _note(path: Path, nodes: list[dynamics.BodyNode], notes: list[Header]) -> None:
-    """Note joints that mimic, and links of a URDF whose mass is not the file's."""
-    for joint in elements(path, "joint"):
-        if joint.find("mimic") is not None:
-            notes.append(note("mimic", joint.get("name"), "this joint mimics another; DART makes it a joint of its own, driven as a mimic"))
+    """Note links of a URDF whose mass is not the file's."""
     held = {node.getName(): node.getInertia() for node in nodes}
     for link in elements(path, "link"):
         name, mass = link.get("name"), link.find("inertial/mass")

@@ -19,11 +19,13 @@ from pydrake.multibody import tree
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
+from featherbench_oracles.core import bad_values, mimics
 from featherbench_oracles.core.algebra import Array, skew, symmetric
+from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.loaded import loaded
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading
-from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, inertial, mentioned, note, overheard
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, inertial, note, overheard
 from featherbench_oracles.core.robot import Description
 
 TYPES = {
@@ -54,19 +56,39 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Multibod
     names = [plant.GetModelInstanceName(tree.ModelInstanceIndex(i)) for i in range(2, plant.num_model_instances())]
     links = loaded(path, _links(plant, joints, damping), notes)
     named = _chained(links, path) if form == "mjcf" else links
-    description = describe(next(iter(names), path.stem), plant.gravity_field().gravity_vector(), named)
+    description = describe(
+        next(iter(names), path.stem), plant.gravity_field().gravity_vector(), bad_values.left_out(path, form, named, notes)
+    )
     own = {after.name for before, after in zip(links, named, strict=True) if before.name != after.name}  # not links of the file
     description["frames"] = [frame for frame in description["frames"] if frame["name"] not in own]
     _note_edits(plant, path, notes)
-    if plant.num_constraints():
+    _note_rotors(plant, notes)
+    if form == "urdf":
+        notes.extend(_mimics(path, plant))
+    elif plant.num_constraints():
         notes.append(note("not_compared", None, f"constraints: {plant.num_constraints()}"))
-    mimics = sum(joint.find("mimic") is not None for joint in elements(path, "joint"))
-    if mimics:
-        by = f"{plant.num_constraints()} coupler constraints" if plant.num_constraints() else "no constraint"
-        notes.append(note("mimic", None, f"{mimics} joints that mimic others are joints of their own with {by}"))
-    notes.extend(mentioned(path))
+    if form == "mjcf":
+        notes.extend(not_compared(path))
     held = Description.read(description)
     return Reading(description, held, notes, make(held, plant, [[joint] for joint in joints if joint.num_velocities()]), {})
+
+
+def _mimics(path: Path, plant: MultibodyPlant) -> list[Header]:
+    """Note what became of each mimic. A plant gives the number of its constraints, and not what they tie."""
+    followers = [name for name, _ in mimics.written(path)]
+    count = plant.num_constraints()
+    held: dict[str, mimics.Mimic | None] = dict.fromkeys(followers if count == len(followers) else ())
+    left = f"Drake has {count} coupler constraints for {len(followers)} mimics, and does not tell which"
+    return mimics.tell(path, held, "a joint of its own with a coupler constraint", left if count else "Drake has no constraint for it")
+
+
+def _note_rotors(plant: MultibodyPlant, notes: list[Header]) -> None:
+    """Note each actuator that reflects the inertia of its rotor to its joint by a gear."""
+    for motor in (plant.get_joint_actuator(i) for i in plant.GetJointActuatorIndices()):
+        rotor, gear = motor.default_rotor_inertia(), motor.default_gear_ratio()
+        if rotor and gear != 1:
+            held = f"the actuator '{motor.name()}' has the rotor inertia {rotor:.6g} and the gear ratio {gear:.6g}: {rotor * gear**2:.6g}"
+            notes.append(note("rotor_inertia", motor.joint().name(), held, [rotor, gear]))
 
 
 # ---- the plant -------------------------------------------------------------------------------------------------------------------

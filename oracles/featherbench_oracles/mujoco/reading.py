@@ -15,7 +15,7 @@ Positions are MuJoCo's own (`qpos`): a hinge with a `ref` is at its place in the
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,9 @@ from typing import Any
 import mujoco as mj
 import numpy as np
 
+from featherbench_oracles.core import bad_values, mimics
 from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.loaded import loaded
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading
@@ -66,16 +68,18 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
         # a second time only if a link was fused: the time of compiling grows with the cube of the number of bodies
         whole_spec, whole = _unfused(path, floating, settings) if model.nbody < given else (spec, model)
     _note_edits(whole_spec, whole, notes)
-    _note_not_compared(model, notes)
-    if form == "urdf" and model.neq:
-        notes.append(note("mimic", None, f"{model.neq} joints that mimic others are joints of their own with an equality constraint"))
+    if form == "mjcf":
+        notes.extend(not_compared(path))
+        _note_armature(model, notes)
+    if form == "urdf":
+        notes.extend(mimics.tell(path, _mimics(model), "a joint of its own with an equality constraint", "a joint of its own"))
     names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
     links = loaded(path, without_free_armature([_link(spec, model, names, i) for i in range(1, model.nbody)], notes), notes)
     gravity = np.zeros(3) if model.opt.disableflags & mj.mjtDisableBit.mjDSBL_GRAVITY else model.opt.gravity
-    description = describe(spec.modelname or path.stem, gravity, links)
+    description = describe(spec.modelname or path.stem, gravity, bad_values.left_out(path, form, links, notes))
     written = None
     if form == "mjcf" and (_balance in settings or _bound in settings):
-        written = describe(spec.modelname or path.stem, gravity, _as_written(whole_spec, whole))
+        written = describe(spec.modelname or path.stem, gravity, bad_values.left_out(path, form, _as_written(whole_spec, whole), []))
     if floating and not any(body["joint"]["type"] == "free" for body in description["bodies"]):
         notes.append(note("root_welded", None, "the file has no single root link that could float"))
     _add_fused_frames(description, names, whole, notes)
@@ -343,11 +347,24 @@ def _without_extras(model: mj.MjModel) -> None:
     for j in range(model.njnt):
         if model.jnt_type[j] == mj.mjtJoint.mjJNT_FREE:
             held.append(model.dof_armature[model.jnt_dofadr[j] : model.jnt_dofadr[j] + 6])
-    changed = any(numbers.any() for numbers in held)
+    wrong = bad_values.bad(model.dof_armature)
+    changed = wrong.any() or any(numbers.any() for numbers in held)
     for numbers in held:
         numbers[:] = 0
+    model.dof_armature[wrong] = 0
     if changed:  # updates what depends on them; its time grows with the cube of the number of bodies
         mj.mj_setConst(model, mj.MjData(model))
+
+
+def _mimics(model: mj.MjModel) -> dict[str, mimics.Mimic | None]:
+    """Find the joints that follow others by an equality, with the coefficients. One with higher powers is no mimic of a URDF."""
+    found: dict[str, mimics.Mimic | None] = {}
+    for k in range(model.neq):
+        if model.eq_type[k] == mj.mjtEq.mjEQ_JOINT and model.eq_obj2id[k] >= 0 and model.eq_active0[k]:
+            follower, leader = (model.joint(int(ids[k])) for ids in (model.eq_obj1id, model.eq_obj2id))
+            offset, multiplier, *_ = model.eq_data[k, :5].tolist()
+            found[follower.name] = mimics.Mimic(leader.name, multiplier, offset)
+    return found
 
 
 # ---- notes -----------------------------------------------------------------------------------------------------------------------
@@ -389,24 +406,13 @@ def _six(inertia: Array) -> str:
     return "(" + ", ".join(f"{x:.6g}" for x in inertia[np.triu_indices(3)]) + ")"
 
 
-def _extras(model: mj.MjModel) -> Iterator[tuple[str, int]]:
-    """List what the model has besides bodies and joints, with counts."""
-    yield "geoms that can collide", int(((model.geom_contype != 0) | (model.geom_conaffinity != 0)).sum())
-    yield "contact pairs", model.npair
-    yield "tendons", model.ntendon
-    yield "actuators", model.nu
-    yield "equality constraints", model.neq
-    yield "sensors", model.nsensor
-    yield "joint springs", int((model.jnt_stiffness != 0).sum())
-    yield "bodies with gravity compensation", int((model.body_gravcomp != 0).sum())
-    yield "mocap bodies", model.nmocap
-    yield "flexible bodies", model.nflex
-    yield "plugins", model.nplugin
-    yield "fluid forces", int(model.opt.density != 0 or model.opt.viscosity != 0)
-
-
-def _note_not_compared(model: mj.MjModel, notes: list[Header]) -> None:
-    """Note each kind of thing that the neutral quantities do not include."""
-    for kind, count in _extras(model):
-        if count:
-            notes.append(note("not_compared", None, f"{kind}: {count}"))
+def _note_armature(model: mj.MjModel, notes: list[Header]) -> None:
+    """Note the armature that tendons and actuators add to M, which descriptions do not have."""
+    part = "is a part of MuJoCo's M; it is left out"
+    for i in np.flatnonzero(model.tendon_armature).tolist():
+        added = f"armature {model.tendon_armature[i]:.6g} of the tendon times the square of its moments {part}"
+        notes.append(note("tendon_armature", _named(model.tendon(i).name, "tendon", i), added, [model.tendon_armature[i]]))
+    for i in np.flatnonzero(model.actuator_armature).tolist():
+        armature, gear = float(model.actuator_armature[i]), float(model.actuator_gear[i, 0])
+        added = f"armature {armature:.6g} of the actuator times the square of its gear {gear:.6g} {part}"
+        notes.append(note("actuator_armature", _named(model.actuator(i).name, "actuator", i), added, [armature * gear**2]))

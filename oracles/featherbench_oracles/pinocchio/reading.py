@@ -15,11 +15,13 @@ from xml.etree import ElementTree
 import numpy as np
 import pinocchio as pin
 
+from featherbench_oracles.core import bad_values, mimics
 from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.loaded import loaded, sound
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading, Unsupported
-from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard, without_free_armature
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, note, overheard, without_free_armature
 from featherbench_oracles.core.robot import Description
 
 WORKSPACE = 15e3  # bytes of Pinocchio's Data per degree of freedom squared (1.4 GB at 300); without it the process may end
@@ -43,17 +45,20 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Mode
     affordable(model.nv)
     carried = _carried_frames(model)
     bodies = list(elements(path, "body"))
-    links = [_link(model, i, bodies, carried) for i in range(1, model.njoints)]
-    links = loaded(path, without_free_armature(links, notes), notes)
+    links = without_free_armature([_link(model, i, bodies, carried) for i in range(1, model.njoints)], notes)
+    links = bad_values.left_out(path, form, loaded(path, links, notes), notes)
     description = describe(model.name or path.stem, model.gravity.linear, links)
     _add_frames(description, model, carried, notes)
-    _note_mimics(path, notes)
+    if form == "urdf":
+        notes.extend(_mimics(path, model))
     _note_gravity(path, model, notes)
-    notes.extend(mentioned(path))
+    if form == "mjcf":
+        notes.extend(not_compared(path))
     held = Description.read(description)
     for joint, link in zip(list(model.joints)[1:], links, strict=True):
         if any(part.type == "free" for part in link.joints):
             model.armature[joint.idx_v : joint.idx_v + joint.nv] = 0
+    model.armature[bad_values.bad(model.armature)] = 0
     return Reading(description, held, notes, make(held, model, _turning(model)), {})
 
 
@@ -214,10 +219,17 @@ def _add_frames(description: Header, model: pin.Model, carried: dict[int, pin.Fr
             description["frames"].append({"name": frame.name, "body": body, "placement": place.json()})
 
 
-def _note_mimics(path: Path, notes: list[Header]) -> None:
-    """Note each joint that mimics another: Pinocchio reads it as an independent joint by default."""
-    names = [joint.get("name") or "" for joint in elements(path, "joint") if joint.find("mimic") is not None]
-    notes.extend(note("mimic", name, "this joint mimics another; Pinocchio reads it as a joint of its own") for name in names)
+def _mimics(path: Path, model: pin.Model) -> list[Header]:
+    """Note each joint that mimics another. By default Pinocchio reads it as an independent joint."""
+    if not any(mimics.written(path)):
+        return []
+    try:
+        nv = pin.buildModelFromUrdf(str(path), mimic=True).nv
+        asked = f"with mimic=True the robot has {nv} degrees of freedom"
+    except ValueError as reason:
+        asked = f"with mimic=True it refuses the file: {str(reason).strip().splitlines()[-1].removeprefix('hint: ')}"
+    held: dict[str, mimics.Mimic | None] = dict.fromkeys(model.names[joint] for joint in model.mimicking_joints)
+    return mimics.tell(path, held, "a joint that follows", f"by default Pinocchio reads an independent joint; {asked}")
 
 
 def _note_gravity(path: Path, model: pin.Model, notes: list[Header]) -> None:

@@ -20,7 +20,7 @@ use featherbench_bench::run::{Opening, Run};
 use featherbench_bench::{
     Cell, Context, Engine, Engines, FileBase, FileContent, FileFormat, OWN, Robot, RobotFile, RobotSource, hash, provenance,
 };
-use featherbench_comparison::import::answers;
+use featherbench_comparison::import::{answers, singular};
 use featherbench_comparison::{Agreement, Import};
 use featherbench_engines::Limits;
 use std::path::Path;
@@ -209,5 +209,6 @@ fn read(source: RobotSource) -> Result<Read, Fail> {
     let path = source.file.as_ref().map(|file| file.path.display().to_string()).unwrap_or_default();
     let malformed = |error: &dyn std::error::Error| Fail::input(format!("{path}: {error}"));
     let robot = Robot::new(&source.description, "file", source.origin, STATES, SEED).map_err(|error| malformed(&error))?;
-    Ok((robot.with_source(&source, SEED).map_err(|error| malformed(&error))?, source.remarks))
+    let remarks = source.remarks.iter().cloned().chain(singular(&robot)).collect();
+    Ok((robot.with_source(&source, SEED).map_err(|error| malformed(&error))?, remarks))
 }

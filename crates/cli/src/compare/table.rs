@@ -121,19 +121,29 @@ fn as_read(rows: &[&Row]) -> String {
     if ranked.len() > LISTED {
         text += &format!("      … and {} more, in the report\n", ranked.len() - LISTED);
     }
-    text += &together(&carried);
+    text += &together(carried.iter().copied());
     let told: Vec<&(&Row, Value)> = differences.iter().filter(|(_, params)| params["weight"] == "information").collect();
     for (_, params) in told.iter().filter(|(row, _)| row.quantity == "dof_order") {
         text += &format!("      other order of joints: {} where the file has {}\n", some(&params["theirs"]), some(&params["ours"]));
     }
-    let limits = told.iter().filter(|(row, _)| row.quantity == "limits").count();
-    if limits > 0 {
-        text += &format!("      limits of position differ at {limits} joints\n");
+    text += &tied(&classes);
+    for note in classes["notes"].as_array().into_iter().flatten().filter(|note| note["cause"] == "bad_value") {
+        text += &format!("      a bad value of the file: {}\n", note["text"].as_str().unwrap_or_default());
     }
+    text += &together(told.iter().copied().filter(|(row, _)| row.quantity == "limits"));
     if rows.iter().all(|row| !["id", "mass_matrix"].contains(&row.quantity.as_str())) {
         return text + &format!("    replayed            not asked: the limit is {LARGEST} dofs\n");
     }
     text + &explained(rows)
+}
+
+/// What the engine makes of joints that mimic others and that it ties as written, one line for each way.
+fn tied(params: &Value) -> String {
+    let mut ways: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for note in params["notes"].as_array().into_iter().flatten().filter(|note| note["cause"] == "mimic") {
+        ways.entry(note["text"].as_str().unwrap_or_default()).or_default().push(note["about"].as_str().unwrap_or_default());
+    }
+    ways.iter().map(|(way, joints)| format!("      mimic {}: {way}\n", joints.join(", "))).collect()
 }
 
 fn line(row: &Row, params: &Value) -> String {
@@ -159,16 +169,18 @@ fn line(row: &Row, params: &Value) -> String {
     text
 }
 
-/// What enters an engine's own simulation alone, one line for each field and cause.
-fn together(carried: &[&(&Row, Value)]) -> String {
+/// What enters an engine's own simulation alone, one line for each field and cause, with the joints by name.
+fn together<'a>(carried: impl Iterator<Item = &'a (&'a Row, Value)>) -> String {
     let mut groups: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
     for (row, params) in carried {
-        let change = format!("{} ({} instead of {})", row.body, some(&params["theirs"]), some(&params["ours"]));
+        let joint = params["joint"].as_str().unwrap_or(&row.body);
+        let change = format!("{joint} ({} instead of {})", some(&params["theirs"]), some(&params["ours"]));
         groups.entry((&row.quantity, params["cause"].as_str().unwrap_or_default())).or_default().push(change);
     }
     let line = |((field, cause), bodies): (&(&str, &str), &Vec<String>)| {
         let cause = if *cause == "unsupported" { "not read" } else { "read otherwise" };
         let beyond = if bodies.len() > 3 { format!(", … ({} in all)", bodies.len()) } else { String::new() };
+        let field = if *field == "limits" { "limits of position" } else { field };
         format!("      {field} {cause}: {}{beyond}; no part of id and M\n", bodies.iter().take(3).cloned().collect::<Vec<_>>().join(", "))
     };
     groups.iter().map(line).collect()

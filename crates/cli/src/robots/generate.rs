@@ -6,7 +6,7 @@ use crate::message::{self, tell};
 use crate::root::Root;
 use crate::{oracles, robots};
 use featherbench_bench::{FileBase, FileContent, FileFormat, RobotSource};
-use featherbench_constrained::{Mechanism, Mobility};
+use featherbench_constrained::{Mechanism, Mobility, gruebler_in_plane};
 use featherbench_formats::OnLoss;
 use featherbench_formats::neutral::{self, NeutralError};
 use featherbench_formats::urdf::{Base, Options};
@@ -53,8 +53,8 @@ pub fn generate(root: &Root, args: &GenArgs) -> Result<(), Fail> {
 fn mobility(description: &Description) -> Result<String, Fail> {
     let bad = |error: &dyn std::error::Error| Fail::input(format!("{}: {error}", description.name));
     let Mechanism { graph, model, constraints } = Mechanism::of(description).map_err(|error| bad(&error))?;
-    let (count, in_plane) = (graph.gruebler(6), graph.gruebler(3));
-    let counted = format!("{} closed by joints; Grübler's count {count} (in a plane {in_plane})", graph.loops());
+    let in_plane = gruebler_in_plane(description).map_or_else(String::new, |count| format!(" (in a plane {count})"));
+    let counted = format!("{} closed by joints; Grübler's count {}{in_plane}", graph.loops(), graph.gruebler(6));
     // At half a turn an orientation has no residual: the count is told all the same.
     Ok(match Mobility::at(&model, &constraints, &at_home(&model.topology)) {
         Ok(found) => format!(

@@ -91,7 +91,7 @@ pub fn free_armature(_: &Path) -> Outcome {
     );
     let out = sandbox.path("out");
     let ended = compare(&[file], &["--engines", "mujoco,pinocchio,drake"], &out);
-    ended.expect(1, &["not compared: joint 'root': armature (0.1, 0.1, 0.1, 0.1, 0.1, 0.1) on the free joint"]);
+    ended.expect(1, &["not compared: 'root': armature (0.1, 0.1, 0.1, 0.1, 0.1, 0.1) on the free joint"]);
     assert!(!ended.output.contains("unexplained:"), "{}", ended.output);
     assert_eq!(differences(&out, "mujoco"), []);
     assert_eq!(differences(&out, "pinocchio"), []);

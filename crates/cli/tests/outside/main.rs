@@ -21,6 +21,7 @@ mod rapier;
 mod reduced;
 #[path = "../support/mod.rs"]
 mod support;
+mod told;
 mod written;
 
 use featherbench_bench::{Engine, FileBase, FileContent, FileFormat, RobotFile};
@@ -65,6 +66,8 @@ fn main() -> ExitCode {
         ("armature of a free joint is compared as a number", || with_engines(compared::free_armature)),
         ("classes of differences and bad files among good ones", || with_engines(compared::classes_and_bad_files)),
         ("a robot beyond an engine's limits is told", || with_engines(compared::limits)),
+        ("what a file says is compared or told by name", || with_engines(told::by_name)),
+        ("an engine that drops a mimic is told", || with_engines(told::mimics)),
         ("engines read alike the URDF that we write", || with_engines(written::urdf_read_alike)),
         ("a browser clicks through the report", browser),
         ("a pendulum in C agrees with our kernels", native::pendulum_answers),

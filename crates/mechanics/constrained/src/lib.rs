@@ -48,7 +48,7 @@ pub use featherbench_model::LoopMotion;
 pub use graph::{BadGraph, Cycle, Edge, Graph};
 pub use laws::Row;
 pub use malformed::{BadConstraint, Defect};
-pub use mechanism::{BadMechanism, Mechanism};
+pub use mechanism::{BadMechanism, Mechanism, gruebler_in_plane};
 pub use mobility::{Mobility, RANK};
 pub use rows::Rows;
 pub use solve::{CONSISTENCY, Constrained, Equations, Kkt, Method, Outcome, Proximal, RangeSpace, Solution};

@@ -4,7 +4,8 @@ use crate::attachment::Attachment;
 use crate::constraint::{Constraint, Constraints, Law};
 use crate::graph::{BadGraph, Edge, Graph};
 use crate::malformed::BadConstraint;
-use featherbench_model::{Description, Loop, LoopEnd, LoopKind, Malformed, Model};
+use featherbench_model::{Description, JointType, Loop, LoopEnd, LoopKind, LoopMotion, Malformed, Model};
+use featherbench_spatial::{Transform, Vec3};
 use thiserror::Error;
 
 /// A robot with loops: its graph, its compiled tree, and a constraint for each loop joint.
@@ -75,6 +76,68 @@ impl Mechanism {
         let constraints = Constraints::new(&model.topology, list)?;
         Ok(Self { graph, model, constraints })
     }
+}
+
+/// Grübler's count in a plane, of the loops that are joints: `Σ freedom − 3·loops`, where a joint's freedom is what it leaves in the plane. A
+/// point that is held leaves one rotation there, and takes two freedoms.
+///
+/// `None` if the robot does not move in one plane: at zero coordinates every axis of rotation has one direction, and every slide is across it.
+///
+/// ```
+/// use featherbench_constrained::{gruebler_in_plane, systems::Ladder};
+/// assert_eq!(gruebler_in_plane(&Ladder::default().description()), Some(1));
+/// ```
+pub fn gruebler_in_plane(description: &Description) -> Option<i64> {
+    let canonical = description.canonical().ok()?;
+    let z = Vec3::new(0.0, 0.0, 1.0);
+    let (mut turning, mut sliding, mut either) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut places, mut freedom): (Vec<Transform<f64>>, i64) = (Vec::new(), 0);
+    for body in &canonical.bodies {
+        let place = body.joint.placement.to_transform();
+        let place = body.parent.map_or(place, |parent| places[parent].compose(&place));
+        match body.joint.kind {
+            JointType::Revolute { axis } => turning.push(place.rotation * Vec3::from_array(axis)),
+            JointType::Prismatic { axis } => sliding.push(place.rotation * Vec3::from_array(axis)),
+            JointType::Planar => turning.push(place.rotation * z),
+            _ => return None,
+        }
+        freedom += body.joint.kind.nv() as i64;
+        places.push(place);
+    }
+    for Loop { kind, .. } in &canonical.loops {
+        let LoopKind::Joint { ends: [end, _], motion } = kind else { continue };
+        let place = end.placement.to_transform();
+        let axis = end.body.map_or(place, |body| places[body].compose(&place)).rotation * z;
+        let left = match motion {
+            LoopMotion::Fixed => 0,
+            LoopMotion::Spherical => 1,
+            LoopMotion::Revolute => {
+                turning.push(axis);
+                1
+            }
+            LoopMotion::Prismatic => {
+                sliding.push(axis);
+                1
+            }
+            LoopMotion::Cylindrical => {
+                either.push(axis);
+                1
+            }
+            LoopMotion::Planar => {
+                turning.push(axis);
+                3
+            }
+        };
+        freedom += left - 3;
+    }
+    // Files give directions with six digits or more.
+    let parallel = |a: Vec3<f64>, b: Vec3<f64>| a.cross(b).norm() <= 1e-6;
+    let across = |a: Vec3<f64>, b: Vec3<f64>| a.dot(b).abs() <= 1e-6;
+    let normal = *turning.first()?;
+    let flat = turning.iter().all(|&axis| parallel(axis, normal))
+        && sliding.iter().all(|&axis| across(axis, normal))
+        && either.iter().all(|&axis| parallel(axis, normal) || across(axis, normal));
+    flat.then_some(freedom)
 }
 
 /// The law of a loop of a canonical description.

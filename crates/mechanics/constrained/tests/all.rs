@@ -7,6 +7,7 @@ mod errors;
 mod files;
 mod graph;
 mod laws;
+mod planar;
 #[path = "../../robots/tests/share.rs"]
 mod share;
 mod solve;

@@ -3,6 +3,7 @@
 use crate::share::one_of;
 use crate::support::{Change, assert_named, edited, edits};
 use featherbench_formats::urdf::{self, Base, Options, UrdfProblem};
+use featherbench_robots::Random;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -225,5 +226,42 @@ proptest! {
             Ok((robot, _)) => prop_assert!(robot.canonical().is_ok_and(|again| again == robot)),
             Err(error) => prop_assert!(error.to_string().starts_with("mutated.urdf")),
         }
+    }
+}
+
+/// A damping or friction that no joint can have is told with its line and joint, and zeros in its place leave a file that is read. The import
+/// itself refuses it.
+#[test]
+fn a_bad_value_is_told_where_it_stands() {
+    const DRAWN: u64 = 240;
+    let mut random = Random::new(44, 3);
+    for k in 0..DRAWN {
+        let count = 1 + random.below(4);
+        let wrong = random.below(count);
+        let attribute = ["damping", "friction"][random.below(2)];
+        let value = match random.below(4) {
+            0 => ["nan", "inf", "-inf"][random.below(3)].to_owned(),
+            _ => format!("{}", -random.uniform(1e-9, 9.0)),
+        };
+        let mut text = String::from("<robot name=\"r\"><link name=\"l\"/>\n");
+        for i in 0..count {
+            let parent = if i == 0 { "l".to_owned() } else { format!("l{}", i - 1) };
+            let said = if i == wrong { format!("{attribute}=\"{value}\"") } else { String::new() };
+            text += &format!(
+                "<link name=\"l{i}\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>\n\
+                 <joint name=\"j{i}\" type=\"continuous\"><parent link=\"{parent}\"/><child link=\"l{i}\"/>\n<dynamics {said}/></joint>\n"
+            );
+        }
+        text += "</robot>";
+        let parsed = urdf::Parsed::of(text.as_bytes(), "bad.urdf").unwrap();
+        let found = parsed.bad_values();
+        assert_eq!(found.len(), 1, "{k}: {found:?}");
+        assert_eq!(&text[found[0].range.clone()], value, "{k}");
+        let line = 4 + 3 * wrong;
+        assert!(found[0].text.starts_with(&format!("line {line}: joint 'j{wrong}' has {attribute}=\"{value}\"")), "{k}: {found:?}");
+        assert!(parsed.import(&Options::default()).is_err(), "{k}");
+        text.replace_range(found[0].range.clone(), &"0".repeat(found[0].range.len()));
+        let repaired = urdf::Parsed::of(text.as_bytes(), "bad.urdf").unwrap();
+        assert!(repaired.bad_values().is_empty() && repaired.import(&Options::default()).is_ok(), "{k}");
     }
 }

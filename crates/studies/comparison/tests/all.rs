@@ -16,5 +16,6 @@ mod repeatability;
 mod reproductions;
 #[path = "../../../mechanics/robots/tests/share.rs"]
 mod share;
+mod singular;
 mod steps;
 mod truth;

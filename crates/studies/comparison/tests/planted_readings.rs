@@ -2,6 +2,7 @@
 //!
 //! Four hundred differences, drawn by seed over ten committed robots, as an engine's parser might cause them.
 
+use featherbench_bench::ImportNote;
 use featherbench_comparison::import::{Cause, Comparison, Difference, Field, Weight};
 use featherbench_formats::neutral;
 use featherbench_model::{BodyDescription, Description, JointType, Placement};
@@ -342,4 +343,116 @@ fn a_base_that_floats_by_another_link_is_told_from_a_joint_that_is_elsewhere() {
     assert!(!placements.is_empty() && placements.iter().all(|difference| difference.cause == Cause::OtherRoot), "{placements:#?}");
     theirs.bodies[root].name = ours.bodies[root].name.clone();
     assert!(found(&ours, &theirs).iter().all(|difference| difference.cause != Cause::OtherRoot));
+}
+
+/// Limits that differ are told with both numbers and their unit. A range that only one side has is told as none on the other.
+#[test]
+fn limits_that_differ_are_told_with_numbers_and_unit() {
+    const DRAWN: u64 = 400;
+    let number = |word: &str| word.parse::<f64>().unwrap_or_else(|error| panic!("{word}: {error}"));
+    let mut told = 0;
+    for k in 0..DRAWN {
+        let mut ours = robot(ROBOTS[k as usize % ROBOTS.len()]);
+        let mut random = Random::new(44, k);
+        let i = random.below(ours.bodies.len());
+        let unit = match ours.bodies[i].joint.kind {
+            JointType::Revolute { .. } => "rad",
+            JointType::Prismatic { .. } => "m",
+            _ => continue,
+        };
+        let mut theirs = ours.clone();
+        // The second is the first in degrees, the first turned about, or another one.
+        let range = [random.uniform(-3.0, 0.0), random.uniform(0.1, 3.0)];
+        let other = match random.below(4) {
+            0 => Some(range.map(f64::to_degrees)),
+            1 => Some([-range[1], -range[0]]),
+            2 => Some([random.uniform(-9.0, -4.0), range[1]]),
+            _ => None,
+        };
+        let joint = &mut ours.bodies[i].joint;
+        (joint.lower, joint.upper) = (vec![range[0]], vec![range[1]]);
+        let joint = &mut theirs.bodies[i].joint;
+        (joint.lower, joint.upper) = other.map_or((vec![], vec![]), |[low, high]| (vec![low], vec![high]));
+        let found = found(&ours, &theirs);
+        assert_eq!(found.len(), 1, "{k}: {found:#?}");
+        assert_eq!((found[0].field, found[0].field.weight()), (Field::Limits, Weight::Information));
+        for (text, range) in [(&found[0].ours, Some(range)), (&found[0].theirs, other)] {
+            let Some(range) = range else {
+                assert_eq!(text, "no limits", "{k}");
+                continue;
+            };
+            let words: Vec<&str> = text.split(' ').collect();
+            assert!(words.len() == 4 && words[1] == "to" && words[3] == unit, "{k}: {text}");
+            // Four digits are written at least: half a unit of the fourth is 5e-4 of the number.
+            for (word, limit) in [(words[0], range[0]), (words[2], range[1])] {
+                assert!((number(word) - limit).abs() <= 5e-4 * limit.abs(), "{k}: {text} for {limit}");
+            }
+        }
+        told += 1;
+    }
+    assert!(told > DRAWN / 2, "{told}");
+}
+
+/// The rotor of an actuator is named as the cause of an armature where its numbers give it, and not where they give another one.
+#[test]
+fn a_rotor_is_named_only_where_its_numbers_give_the_armature() {
+    const DRAWN: u64 = 400;
+    let mut named = 0;
+    for k in 0..DRAWN {
+        let ours = robot(ROBOTS[k as usize % ROBOTS.len()]);
+        let mut random = Random::new(45, k);
+        let turning = |body: &BodyDescription| matches!(body.joint.kind, JointType::Revolute { .. });
+        let hinges: Vec<usize> = (0..ours.bodies.len()).filter(|&i| turning(&ours.bodies[i])).collect();
+        let i = hinges[random.below(hinges.len())];
+        let (rotor, gear) = (random.uniform(1e-6, 1e-3), random.uniform(2.0, 200.0));
+        let right = random.below(2) == 0;
+        let mut theirs = ours.clone();
+        let joint = &mut theirs.bodies[i].joint;
+        let before = joint.armature.first().copied().unwrap_or(0.0);
+        joint.armature = vec![before + rotor * gear * gear * if right { 1.0 } else { random.uniform(1.01, 2.0) }];
+        let note = ImportNote {
+            cause: "rotor_inertia".into(),
+            about: Some(joint.name.clone()),
+            text: "a rotor".into(),
+            numbers: vec![rotor, gear],
+        };
+        let found: Vec<Difference> = Comparison::of(&ours, &theirs, &[], &[note]).differences().cloned().collect();
+        assert_eq!(found.len(), 1, "{k}: {found:#?}");
+        assert_eq!((found[0].field, found[0].cause == Cause::RotorInertia), (Field::Armature, right), "{k}: {found:#?}");
+        named += usize::from(right);
+    }
+    assert!(named > 100, "{named}");
+}
+
+/// Another order names only what the file names: a joint without a name is told by its body.
+#[test]
+fn another_order_names_no_joint_that_the_file_does_not_name() {
+    const DRAWN: u64 = 240;
+    let mut told = 0;
+    for k in 0..DRAWN {
+        let mut ours = robot(ROBOTS[k as usize % ROBOTS.len()]);
+        let mut random = Random::new(46, k);
+        for i in 0..ours.bodies.len() {
+            if random.below(2) == 0 {
+                // As MuJoCo's reading names a joint that has no name.
+                ours.bodies[i].joint.name = format!("joint {i}");
+            }
+        }
+        let mut theirs = ours.clone();
+        let (_, field, _) = sow(&mut theirs, Plant::Order, &mut random);
+        // A robot without siblings has one order alone.
+        if field != Field::DofOrder {
+            continue;
+        }
+        let found: Vec<Difference> = found(&ours, &theirs).into_iter().filter(|difference| difference.field == field).collect();
+        assert_eq!(found.len(), 1, "{k}");
+        for name in found[0].ours.split(", ").chain(found[0].theirs.split(", ")) {
+            let body = name.strip_prefix("that of ");
+            let known = |body: &BodyDescription| body.joint.name == name && !name.starts_with("joint ");
+            let named = body.map_or_else(|| ours.bodies.iter().any(known), |body| ours.bodies.iter().any(|other| other.name == body));
+            assert!(named, "{k}: {name} in {found:#?}");
+            told += usize::from(body.is_some());
+        }
+    }
+    assert!(told > 100, "{told}");
 }

@@ -37,13 +37,24 @@ impl RobotSource {
     pub fn urdf(content: &FileContent, base: FileBase) -> Result<Self, HarnessError> {
         let path = std::path::absolute(&content.path).map_err(|source| HarnessError::io(&content.path, source))?;
         let name = path.display().to_string();
-        let parsed = Parsed::of(&content.bytes, &name)?;
+        // A bad value is a finding about the file, and the rest is compared: zeros stand where its characters are, so that places stay.
+        let as_written = Parsed::of(&content.bytes, &name)?;
+        let bad = as_written.bad_values();
+        let mut repaired = Vec::new();
+        let parsed = if bad.is_empty() {
+            as_written
+        } else {
+            repaired.clone_from(&content.bytes);
+            bad.iter().for_each(|value| repaired[value.range.clone()].fill(b'0'));
+            Parsed::of(&repaired, &name)?
+        };
         let root = if base == FileBase::Free { Base::Floating } else { Base::Fixed };
         let (description, notes) = parsed.import(&Options { base: root, independent_mimics: true, allow_massless: true })?;
         let file = content.file_of_urdf(&parsed, base)?;
-        let told: Vec<String> = notes.iter().map(ToString::to_string).collect();
+        let bad = bad.into_iter().map(|value| value.text);
+        let told: Vec<String> = bad.clone().chain(notes.iter().map(ToString::to_string)).collect();
         Ok(Self {
-            remarks: told.iter().filter(|note| note.contains("mimic")).cloned().collect(),
+            remarks: bad.chain(told.iter().filter(|note| note.contains("mimic")).cloned()).collect(),
             notes: told,
             warnings: notes.into_iter().filter_map(|note| note.warning).collect(),
             ..Self::of_file(description, file)
@@ -61,14 +72,20 @@ impl RobotSource {
         if let Some(written) = reading.written.take() {
             reading.description = written.canonical().map_err(|error| bad(error.to_string()))?;
         }
-        let told =
-            |note: &ImportNote| format!("{}{}", note.about.as_ref().map_or_else(String::new, |about| format!("{about}: ")), note.text);
-        let armature = reading.notes.iter().filter(|note| note.cause == "free_armature");
-        let armature = armature.map(|note| format!("joint '{}': {}", note.about.as_deref().unwrap_or_default(), note.text));
+        let told = |note: &ImportNote| {
+            let left = if note.cause == "not_compared" { "left out: " } else { "" };
+            format!("{left}{}{}", note.about.as_ref().map_or_else(String::new, |about| format!("{about}: ")), note.text)
+        };
+        let armature = reading.notes.iter().filter(|note| note.cause.ends_with("_armature"));
+        let bad = reading.notes.iter().filter(|note| note.cause == "bad_value");
+        let bad = bad.map(|note| note.text.split("; this engine").next().unwrap_or_default().to_owned());
+        let armature = armature.map(|note| format!("'{}': {}", note.about.as_deref().unwrap_or_default(), note.text));
+        let left: Vec<&str> = reading.notes.iter().filter(|note| note.cause == "not_compared").map(|note| note.text.as_str()).collect();
+        let left = (!left.is_empty()).then(|| left.join("; "));
         let loops = reading.description.warnings().into_iter().filter(|warning| matches!(warning, Warning::Loops { .. }));
         Ok(Self {
             notes: reading.notes.iter().map(told).collect(),
-            remarks: armature.chain(loops.map(|warning| warning.to_string())).collect(),
+            remarks: bad.chain(armature).chain(loops.map(|warning| warning.to_string())).chain(left).collect(),
             keyframes: reading.keyframes,
             ..Self::of_file(reading.description, file)
         })

@@ -27,7 +27,7 @@ const AS_READ: [Quantity; 6] = [
     Quantity::KineticEnergy,
 ];
 /// The causes that a note may give.
-const CAUSES: [&str; 14] = [
+const CAUSES: [&str; 20] = [
     "mass_edited",
     "com_edited",
     "inertia_edited",
@@ -36,9 +36,15 @@ const CAUSES: [&str; 14] = [
     "geometry_dropped",
     "from_geometry",
     "free_armature",
+    "tendon_armature",
+    "actuator_armature",
     "fused",
     "root_welded",
+    "bad_value",
+    "rotor_inertia",
     "mimic",
+    "mimic_otherwise",
+    "mimic_dropped",
     "gravity_ignored",
     "not_compared",
     "warning",

@@ -4,9 +4,11 @@ use super::elements::{Link, origin};
 use super::error::At;
 use super::xml::Element;
 use crate::solid::{self, Solid};
+use crate::text::Lines;
 use featherbench_model::Placement;
 use featherbench_spatial::{RigidBodyInertia, Sym3, Transform, Vec3};
 use roxmltree::{Document, Node};
+use std::ops::Range;
 
 /// Mass properties, in axes of their own.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +39,32 @@ pub struct FileLink {
 pub(super) fn links(document: &Document, density: f64) -> Vec<FileLink> {
     let nodes = document.root_element().children().filter(|node| node.has_tag_name("link"));
     nodes.map(|node| link(Element { node, owner: "the link" }, density)).collect::<Result<_, At>>().unwrap_or_default()
+}
+
+/// A damping or friction of a file that no joint can have: it is negative, infinite or no number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BadValue {
+    /// Where its characters stand in the file.
+    pub range: Range<usize>,
+    /// What is wrong, with line and joint.
+    pub text: String,
+}
+
+/// The bad values of a document. Words that are no numbers are for the import to refuse.
+pub(super) fn bad_values(document: &Document, lines: &Lines) -> Vec<BadValue> {
+    let mut found = Vec::new();
+    for joint in document.root_element().children().filter(|node| node.has_tag_name("joint")) {
+        for dynamics in joint.children().filter(|node| node.has_tag_name("dynamics")) {
+            let bad = |word: &str| word.trim().parse::<f64>().is_ok_and(|x| !(x.is_finite() && x >= 0.0));
+            for attribute in dynamics.attributes().filter(|a| ["damping", "friction"].contains(&a.name()) && bad(a.value())) {
+                let (line, name) = (lines.line(attribute.range().start), joint.attribute("name").unwrap_or_default());
+                let (word, value) = (attribute.name(), attribute.value());
+                let text = format!("line {line}: joint '{name}' has {word}=\"{value}\", which no joint can have; it is left out");
+                found.push(BadValue { range: attribute.range_value(), text });
+            }
+        }
+    }
+    found
 }
 
 /// A `<mimic>` of a file.

@@ -36,7 +36,7 @@ mod write;
 mod xml;
 
 pub use error::{UrdfError, UrdfProblem};
-pub use links::{FileInertial, FileLink, Mimic};
+pub use links::{BadValue, FileInertial, FileLink, Mimic};
 pub use write::{to_string, write};
 
 use crate::{TextError, text};
@@ -142,6 +142,11 @@ impl<'a> Parsed<'a> {
     /// The links in the order of the file, with their collision geometry at a density (kg/m³). A file whose links have an error has none.
     pub fn links(&self, density: f64) -> Vec<FileLink> {
         links::links(&self.document, density)
+    }
+
+    /// Damping and friction that no joint can have, in the order of the file. The import refuses them.
+    pub fn bad_values(&self) -> Vec<BadValue> {
+        links::bad_values(&self.document, &text::Lines::new(self.text))
     }
 
     /// The mimics in the order of the file.

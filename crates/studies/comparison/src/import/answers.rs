@@ -22,7 +22,7 @@ const REPAIRS: [&str; 3] = ["balanceinertia", "bounds", "geometry_dropped"];
 pub enum Loads {
     /// As it is written.
     Yes,
-    /// After a repair: it refuses the file as it is written.
+    /// After a repair, as it refuses the file as it is written; or without the ties of joints that mimic others.
     Altered,
     /// Not at all.
     No,
@@ -123,9 +123,10 @@ fn answer(read: &Row, rows: &[Row]) -> Answer {
     let of_engine = |row: &&Row| row.study == "import" && row.robot == read.robot && row.engine == read.engine;
     let rows: Vec<&Row> = rows.iter().filter(of_engine).collect();
     let repaired = repairs(read);
+    let untied = rows.iter().any(|row| row.metric == "difference" && row.quantity == "mimic");
     let loads = match read.value {
         None => Loads::No,
-        Some(_) if repaired.is_empty() => Loads::Yes,
+        Some(_) if repaired.is_empty() && !untied => Loads::Yes,
         Some(_) => Loads::Altered,
     };
     let unexplained = rows.iter().find(|row| row.metric == "unexplained");
@@ -206,6 +207,7 @@ fn remedy(read: &Row, largest: Option<&Largest>) -> String {
         (_, "mimic") => {
             format!("take the joint of '{body}' as free, or couple it by yourself: engines treat mimic joints in different ways")
         }
+        (_, "added_armature") => format!("add the armature of '{body}' to this engine's M by yourself, or take it out of the file"),
         (Some(tried), _) => tried.to_owned(),
         _ => "do not use this engine for this file as it is: what it loses cannot be set after loading".into(),
     }

@@ -25,12 +25,26 @@ pub(super) fn cause(field: Field, ours: &BodyDescription, theirs: &BodyDescripti
         },
         Field::Placement => (placement(ours, theirs), None),
         Field::JointType if said("mimic").is_some() => (Cause::Mimic, sentence(&["mimic"])),
+        Field::Armature if rotor(ours, theirs, notes) => (Cause::RotorInertia, sentence(&["rotor_inertia"])),
         Field::Armature if unread(&theirs.joint.armature) => (Cause::Unsupported, None),
         Field::Damping if unread(&theirs.joint.damping) => (Cause::Unsupported, None),
         Field::Friction if unread(&theirs.joint.friction) => (Cause::Unsupported, None),
         Field::Armature if scaled(&ours.joint.armature, &theirs.joint.armature) => (Cause::Unit, None),
         _ => (Cause::Number, None),
     }
+}
+
+/// Whether theirs is ours and the inertia of a rotor times the gear ratio squared, by the numbers that the parser tells of it.
+fn rotor(ours: &BodyDescription, theirs: &BodyDescription, notes: &[&ImportNote]) -> bool {
+    notes.iter().filter(|note| note.cause == "rotor_inertia").any(|note| {
+        match (note.numbers.as_slice(), theirs.joint.armature.as_slice()) {
+            (&[inertia, gear], &[held]) => {
+                let due = ours.joint.armature.first().copied().unwrap_or(0.0) + inertia * gear * gear;
+                (held - due).abs() <= TESTED * due.abs()
+            }
+            _ => false,
+        }
+    })
 }
 
 /// The cause for an inertia whose links are not known one by one: the same principal moments in other axes, or three equal ones.

@@ -227,6 +227,7 @@ fn shared(
         }
     }
     super::context::explain(ours, (theirs, &partner), &written, &mut findings, reach);
+    findings.extend(mimics(ours, notes));
     findings.extend(gravity(ours, theirs));
     findings.extend(order(ours, &partner));
     findings
@@ -268,6 +269,19 @@ fn about<'a>(ours: &Description, i: usize, theirs: &BodyDescription, notes: &'a 
     notes.iter().filter(concerns).collect()
 }
 
+/// The joints that follow another one in the file, and not in the engine: by its usual way of reading it computes other physics. That of the
+/// tree is compared without mimics, so the reduced dynamics GᵀMG and Gᵀh of an engine that ties them as written follow from it.
+fn mimics(ours: &Description, notes: &[ImportNote]) -> impl Iterator<Item = SingleDifference> {
+    notes.iter().filter(|note| ["mimic_dropped", "mimic_otherwise"].contains(&note.cause.as_str())).map(|note| {
+        let joint = note.about.as_deref().unwrap_or_default();
+        let body = ours.bodies.iter().find(|body| body.joint.name == joint).map_or(joint, |body| &body.name);
+        let theirs = if note.cause == "mimic_dropped" { "a joint of its own" } else { "tied otherwise" };
+        let mut finding = whole(body, Field::Mimic, "follows another joint".into(), theirs.into(), Cause::Mimic);
+        finding.difference.account = Some(format!("joint '{joint}': {}", note.text));
+        finding
+    })
+}
+
 fn gravity(ours: &Description, theirs: &Description) -> Option<SingleDifference> {
     let far = fields::norm(ours.gravity).max(fields::norm(theirs.gravity));
     let size = featherbench_bench::measure::ratio(fields::distance(ours.gravity, theirs.gravity), far);
@@ -280,6 +294,17 @@ fn gravity(ours: &Description, theirs: &Description) -> Option<SingleDifference>
     })
 }
 
+/// A joint by what the file names: readings give joints and bodies without a name their kind and number, and nobody finds these in the file.
+fn in_file(body: &BodyDescription) -> String {
+    let numbered = |name: &str, kind: &str| name.strip_prefix(kind).is_some_and(|rest| rest.trim_start().parse::<usize>().is_ok());
+    let (joint, body) = (&body.joint.name, &body.name);
+    match (joint.is_empty() || numbered(joint, "joint "), numbered(body, "body ")) {
+        (false, _) => joint.clone(),
+        (true, false) => format!("that of {body}"),
+        (true, true) => format!("that of the file's {body}, which has no name"),
+    }
+}
+
 /// A difference in the order of joints, described from the first to the last that is elsewhere.
 fn order(ours: &Description, partner: &[Option<usize>]) -> Option<SingleDifference> {
     let mut sorted: Vec<(usize, usize)> = partner.iter().enumerate().filter_map(|(i, j)| Some(((*j)?, i))).collect();
@@ -289,7 +314,7 @@ fn order(ours: &Description, partner: &[Option<usize>]) -> Option<SingleDifferen
     let moved = own.iter().zip(&theirs).filter(|(a, b)| a != b).count();
     let (first, last) = (own.iter().zip(&theirs).position(|(a, b)| a != b)?, own.iter().zip(&theirs).rposition(|(a, b)| a != b)?);
     let text = |list: &[usize]| {
-        let name = |&i: &usize| ours.bodies[i].joint.name.as_str();
+        let name = |&i: &usize| in_file(&ours.bodies[i]);
         list[first..=last].iter().map(name).collect::<Vec<_>>().join(", ")
     };
     let mut finding = whole("", Field::DofOrder, text(&own), text(&theirs), Cause::Order);

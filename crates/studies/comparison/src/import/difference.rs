@@ -52,6 +52,8 @@ pub enum Field {
     Gravity,
     /// The order of the degrees of freedom.
     DofOrder,
+    /// That the joint follows another one.
+    Mimic,
     /// Limits of position.
     Limits,
 }
@@ -114,6 +116,10 @@ pub enum Cause {
     Mimic,
     /// Not imported: the parser does not know the element.
     Unsupported,
+    /// The armature of a tendon or an actuator is a part of M in one of the engines only.
+    AddedArmature,
+    /// The inertia of an actuator's rotor times the gear ratio squared.
+    RotorInertia,
     /// A link without an inertial was given the engine's own: one kilogram and one kg·m² about each axis.
     DefaultInertia,
     /// The centre of mass, or one of its coordinates, with the other sign.
@@ -176,6 +182,7 @@ impl Field {
             Self::Friction => "friction",
             Self::Gravity => "gravity",
             Self::DofOrder => "dof_order",
+            Self::Mimic => "mimic",
             Self::Limits => "limits",
         }
     }
@@ -272,6 +279,8 @@ impl Cause {
             Self::Edited => "edited",
             Self::Mimic => "mimic",
             Self::Unsupported => "unsupported",
+            Self::AddedArmature => "added_armature",
+            Self::RotorInertia => "rotor_inertia",
             Self::DefaultInertia => "default_inertia",
             Self::ComSign => "com_sign",
             Self::OffDiagonals => "off_diagonals",

@@ -2,7 +2,7 @@
 
 use super::Field;
 use featherbench_bench::measure::worst;
-use featherbench_model::{BodyDescription, Description, JointType};
+use featherbench_model::{BodyDescription, Description, JointDescription, JointType};
 use featherbench_spatial::{Mat3, Vec3};
 
 /// The largest distance that rounding may cause between two right import results of one link: 16 ε. Parsers turn Euler angles into
@@ -103,7 +103,7 @@ pub(super) fn size(field: Field, ours: &BodyDescription, theirs: &BodyDescriptio
                 0.0
             }
         }
-        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder => 0.0,
+        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder | Field::Mimic => 0.0,
     }
 }
 
@@ -129,7 +129,7 @@ pub(super) fn copy(field: Field, from: &BodyDescription, to: &mut BodyDescriptio
             to.joint.lower.clone_from(&joint.lower);
             to.joint.upper.clone_from(&joint.upper);
         }
-        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder => {}
+        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder | Field::Mimic => {}
     }
 }
 
@@ -159,8 +159,8 @@ pub(super) fn written(field: Field, body: &BodyDescription, size: f64) -> String
         Field::Armature => list(&joint.armature),
         Field::Damping => list(&joint.damping),
         Field::Friction => list(&joint.friction),
-        Field::Limits => format!("{} to {}", list(&joint.lower), list(&joint.upper)),
-        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder => String::new(),
+        Field::Limits => limits_written(joint, size),
+        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder | Field::Mimic => String::new(),
     }
 }
 
@@ -220,9 +220,26 @@ fn per_dof(a: &[f64], b: &[f64]) -> f64 {
     relative(&whole(a), &whole(b))
 }
 
-/// The same for limits; more than a million radians or metres means no limit.
+/// One end of a range, if it is a limit: more than a million radians or metres is none.
+fn limited(list: &[f64], k: usize) -> Option<f64> {
+    list.get(k).copied().filter(|x| x.abs() < 1e6)
+}
+
+/// The ranges of a joint with their unit.
+fn limits_written(joint: &JointDescription, size: f64) -> String {
+    let end = |list: &[f64], k: usize| limited(list, k).map_or("no limit".to_owned(), |x| digits(x, size));
+    let range = |k: usize| format!("{} to {}", end(&joint.lower, k), end(&joint.upper, k));
+    let unit = match joint.kind {
+        JointType::Prismatic { .. } => "m",
+        JointType::Revolute { .. } | JointType::Helical { .. } => "rad",
+        _ => "(rad and m)",
+    };
+    let ranges: Vec<String> = (0..joint.lower.len().max(joint.upper.len())).map(range).collect();
+    if ranges.is_empty() { "no limits".to_owned() } else { format!("{} {unit}", ranges.join(", ")) }
+}
+
+/// The same for limits.
 fn limits(a: &[f64], b: &[f64]) -> f64 {
-    let limited = |list: &[f64], k: usize| list.get(k).copied().filter(|x| x.abs() < 1e6);
     let one = |k: usize| match (limited(a, k), limited(b, k)) {
         (None, None) => 0.0,
         (Some(x), Some(y)) => relative(&[x], &[y]),

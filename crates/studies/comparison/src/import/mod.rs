@@ -23,6 +23,7 @@ mod remedy;
 mod replay;
 mod rows;
 pub(crate) mod section;
+mod singular;
 mod subtree;
 mod variants;
 pub(crate) mod words;
@@ -31,6 +32,7 @@ pub use answers::{Answer, Largest, Loads, answers, repairs};
 pub use comparison::{Comparison, SingleDifference};
 pub use difference::{Cause, Class, Difference, Field, Weight};
 pub use replay::Effect;
+pub use singular::singular;
 pub use subtree::{SubTree, bound};
 
 use featherbench_bench::{

@@ -89,7 +89,8 @@ impl OfEngine<'_> {
         // The variants are those of the file as MuJoCo accepts it, so they are no hypotheses about itself.
         let variants = self.compiler.filter(|import| *import != reading).map_or(&[][..], |import| &import.variants);
         let mut comparison = Comparison::of(ours, theirs, links, &reading.notes).explained_by(ours, theirs, variants, &reading.notes);
-        comparison.findings.extend(self.compiler.into_iter().flat_map(|import| armature::on_free_joints(&import.notes, &reading.notes)));
+        let beside = |import: &Import| armature::beside_descriptions(&import.notes, &reading.notes);
+        comparison.findings.extend(self.compiler.into_iter().flat_map(beside));
         let own = alterable(&comparison, self.robot);
         let states = &self.robot.states;
         let afforded = (WORK / (states.count() * states.nv * states.nv).max(1)).max(LEAST_ALONE);
@@ -102,7 +103,10 @@ impl OfEngine<'_> {
             comparison.findings.iter().zip(&effects).map(|(finding, effect)| self.class(finding, effect.as_ref())).collect();
         let remedy = remedy::tried(ours, theirs, &comparison, &classes, self.robot);
         let mut rows = vec![self.count(&comparison, &classes, remedy, reading)];
-        rows.extend(comparison.findings.iter().zip(&effects).map(|(finding, effect)| self.difference(finding, effect.as_ref())));
+        rows.extend(comparison.findings.iter().zip(&effects).map(|(finding, effect)| {
+            let joint = comparison.ours.bodies.iter().find(|body| body.name == finding.difference.body).map(|body| &*body.joint.name);
+            self.difference(finding, joint, effect.as_ref())
+        }));
         let answers: Vec<(&Cell, Result<&[f64], &NoAnswer>)> =
             self.of_engine.iter().map(|(cell, outcome)| (cell, values(outcome))).collect();
         for (cell, answer) in &answers {
@@ -143,12 +147,14 @@ impl OfEngine<'_> {
         Row { params: self.params(more), ..self.row(self.cell, "differences") }.informed(felt as f64)
     }
 
-    fn difference(&self, finding: &SingleDifference, alone: Option<&Effect>) -> Row {
+    /// A difference at a body, with the joint that moves it.
+    fn difference(&self, finding: &SingleDifference, joint: Option<&str>, alone: Option<&Effect>) -> Row {
         let difference = &finding.difference;
         let number = |of: fn(&Effect) -> f64| alone.map(of).filter(|error| error.is_finite());
         let more = json!({
             "cause": difference.cause.name(),
             "class": self.class(finding, alone).name(),
+            "joint": joint,
             "ours": difference.ours,
             "theirs": difference.theirs,
             "weight": difference.field.weight().name(),

@@ -36,9 +36,15 @@ impl Cell<'_> {
         said.unwrap_or(SHALLOW)
     }
 
-    /// Whether the answers about the imported robot are those of the reference. A NaN is not.
+    /// Whether the answers about the imported robot are those of the reference, and nothing that was taken out of both changes the physics. A
+    /// NaN is not.
     fn agrees(&self) -> Option<bool> {
-        self.error.map(|error| error <= self.bound())
+        self.error.map(|error| error <= self.bound() && self.params()["physics"].as_u64().unwrap_or(0) == 0)
+    }
+
+    /// The parameters of its import.
+    fn params(&self) -> Value {
+        self.read.and_then(|row| serde_json::from_str(&row.params).ok()).unwrap_or_default()
     }
 }
 
@@ -117,6 +123,34 @@ fn body(run: &RunInfo, overview: &Overview, imports: &Imports, marks: &[Mark]) -
             div #import-details role="region" aria-live="polite" tabindex="-1" {}
             h3 { "Causes" }
             (causes(overview, imports))
+            (told(overview, imports))
+        }
+    }
+}
+
+/// The causes of notes on what a file says and no compared quantity has.
+const BESIDE: [&str; 7] =
+    ["not_compared", "tendon_armature", "actuator_armature", "free_armature", "bad_value", "mimic", "mimic_otherwise"];
+
+/// What the files say beside what is compared, by name.
+fn told(overview: &Overview, imports: &Imports) -> Markup {
+    let mut lines: BTreeMap<(usize, String), Vec<&str>> = BTreeMap::new();
+    for (&(robot, engine), cell) in &imports.cells {
+        for note in cell.params()["notes"].as_array().into_iter().flatten().filter(|note| BESIDE.iter().any(|word| note["cause"] == *word))
+        {
+            let about = note["about"].as_str().map_or_else(String::new, |about| format!("{about}: "));
+            let text = format!("{about}{}", note["text"].as_str().unwrap_or_default());
+            lines.entry((robot, text)).or_default().push(overview.engines[engine]);
+        }
+    }
+    html! {
+        @if !lines.is_empty() {
+            details #import-told {
+                summary { "What the files say that is not compared, or is taken out of both sides" }
+                div.scroll.tall { table.compact { tbody { @for ((robot, text), engines) in &lines {
+                    tr { th scope="row" { (overview.robots[*robot].name) } td { (text) } td { (engines.join(", ")) } }
+                } } } }
+            }
         }
     }
 }
@@ -298,6 +332,8 @@ fn phrase(name: &str) -> &str {
         "geometry" => "computed from the shape of the body at 1000 kg/m³",
         "edited" => "replaced by the parser, as it says itself",
         "mimic" => "the joint follows another one",
+        "added_armature" => "the armature of a tendon or an actuator",
+        "rotor_inertia" => "the inertia of an actuator's rotor times the gear ratio squared",
         "unsupported" => "not read",
         other => other,
     }

@@ -20,6 +20,7 @@ pub(crate) const WORDS: Words = Words {
         ("states", "the number of states that were asked"),
         ("cause", "the named cause of a difference"),
         ("class", "whether a difference changes the physics, is rounding, or is only not read"),
+        ("joint", "the joint that moves the body"),
         ("ours", "the value of the reference import"),
         ("theirs", "the value of the engine's import"),
         ("weight", "what a field is worth: dynamics, carried or information"),
