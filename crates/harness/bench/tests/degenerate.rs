@@ -86,8 +86,7 @@ fn ours(robot: &Robot, k: usize) -> Vec<(Quantity, Vec<f64>)> {
     let (model, states) = (&robot.model, &robot.states);
     let (q, v, a) = (states.q(k), states.v(k), states.a(k));
     let motion = forward_kinematics(model, q, v, a).unwrap();
-    let bodies =
-        |f: &dyn Fn(featherbench_dynamics::BodyMotion<f64>) -> Vec<f64>| -> Vec<f64> { motion.iter().flat_map(|m| f(m)).collect() };
+    let bodies = |f: &dyn Fn(featherbench_dynamics::BodyMotion<f64>) -> Vec<f64>| -> Vec<f64> { motion.iter().flat_map(f).collect() };
     let matrix = mass_matrix(model, q).unwrap();
     let nv = states.nv;
     vec![
@@ -111,8 +110,8 @@ fn torques_of_gravity(robot: &Robot, k: usize) -> Vec<f64> {
         let (mut moment, mut force) = (Vec3::zero(), Vec3::zero());
         for j in i..motion.len() {
             let weight = model.gravity * -model.inertias[j].mass;
-            moment = moment + (at(j) - center).cross(weight);
-            force = force + weight;
+            moment += (at(j) - center).cross(weight);
+            force += weight;
         }
         let about = moment - (motion[i].placement.translation - center).cross(force);
         let local = motion[i].placement.rotation.transpose_mul(about);
@@ -132,7 +131,7 @@ fn rounding_is_rounding_where_nothing_is_left_to_divide_by() {
         let truth = TruthModel::new(&robot).unwrap();
         let at = robot.magnitudes();
         let forward = ForwardScale::all(&robot, &at);
-        for k in 0..robot.states.count() {
+        for (k, scale) in forward.iter().enumerate() {
             for (quantity, value) in ours(&robot, k) {
                 let due = truth.answer(&robot, quantity, k).unwrap();
                 let error = close(&robot, quantity, k, &due, &value);
@@ -142,10 +141,10 @@ fn rounding_is_rounding_where_nothing_is_left_to_divide_by() {
             let states = &robot.states;
             let a = forward_dynamics(&robot.model, states.q(k), states.v(k), states.tau(k)).unwrap();
             let due = truth.answer(&robot, Quantity::ForwardDynamics, k).unwrap();
-            let (backward, error) = (forward[k].backward_error(&a), forward[k].forward_error(&due, &a));
+            let (backward, error) = (scale.backward_error(&a), scale.forward_error(&due, &a));
             let allowed = GATE * robot.depth as f64;
             assert!(backward <= allowed, "seed {seed}: fd at state {k} has the backward error {backward:e}");
-            assert!(error <= allowed * forward[k].amplification, "seed {seed}: fd at state {k} is off by {error:e}");
+            assert!(error <= allowed * scale.amplification, "seed {seed}: fd at state {k} is off by {error:e}");
             // At rest the bias is that of gravity.
             if states.v(k).iter().all(|x| *x == 0.0) {
                 let due = truth.answer(&robot, Quantity::Bias, k).unwrap();

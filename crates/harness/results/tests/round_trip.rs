@@ -241,6 +241,7 @@ fn run_info() -> RunInfo {
         seed: u64::MAX,
         live: false,
         rows: 1,
+        files: Vec::new(),
         engines: vec![EngineInfo {
             name: "featherbench".into(),
             version: "0.1.0".into(),
@@ -310,7 +311,8 @@ fn a_run_survives_its_folder() {
     let rows = [Row::default().informed(0.1)];
     write_run(&folder.path().join("new/run"), &run_info(), &rows).unwrap();
     let (run, read) = read_run(&folder.path().join("new/run")).unwrap();
-    assert_eq!(run, run_info());
+    assert_eq!(run.files, [CSV_NAME, SCHEMA_NAME, RUN_NAME, DRAWINGS_NAME], "each has a checksum");
+    assert_eq!(RunInfo { files: Vec::new(), ..run }, run_info());
     assert_eq!(read, rows);
     assert_eq!(
         fs::read_to_string(folder.path().join("new/run").join(SCHEMA_NAME)).unwrap(),
@@ -329,13 +331,14 @@ fn drawings_are_a_file_of_their_own() {
     // An older version had them in run.json.
     let drawings = serde_json::to_string(&run_info().drawings).unwrap();
     let old = text(RUN_NAME).replacen('{', &format!("{{\"drawings\":{drawings},"), 1);
-    assert_eq!(RunInfo::parse(&old, Path::new(RUN_NAME)).unwrap(), RunInfo { rows: 0, ..run_info() });
+    let read = RunInfo::parse(&old, Path::new(RUN_NAME)).unwrap();
+    assert_eq!(RunInfo { files: Vec::new(), ..read }, RunInfo { rows: 0, ..run_info() });
     // A run without drawings has no such file.
     let bare = folder.path().join("bare");
     let plain = RunInfo { drawings: BTreeMap::new(), rows: 0, ..run_info() };
     write_run(&bare, &plain, &[]).unwrap();
     assert!(!bare.join(DRAWINGS_NAME).exists());
-    assert_eq!(read_run(&bare).unwrap().0, plain);
+    assert_eq!(RunInfo { files: Vec::new(), ..read_run(&bare).unwrap().0 }, plain);
     let mut lost = run_info();
     lost.drawings.get_mut("panda").unwrap().0[0].mass = f64::NAN;
     assert!(write_run(&bare, &lost, &[]).unwrap_err().to_string().contains("the drawing of panda"));
