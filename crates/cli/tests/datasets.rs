@@ -23,13 +23,14 @@ fn generated() -> Vec<(String, String)> {
     lines.map(|(name, spec)| (name.to_owned(), spec.to_owned())).collect()
 }
 
-/// Nine tenths are recorded answers. What else is kept may grow by half a megabyte before somebody has to choose.
+/// Nineteen in twenty bytes are recorded answers: every quantity, of every body, at every state. What else is kept may grow by some hundred
+/// kilobytes before somebody has to choose.
 #[test]
-fn the_data_stay_below_eight_and_a_half_megabytes() {
+fn the_data_stay_below_fourteen_megabytes() {
     let files = files(&project().join("datasets"));
     assert!(files.len() >= 50, "{} files in datasets", files.len());
     let bytes: u64 = files.iter().map(|path| path.metadata().unwrap().len()).sum();
-    assert!(bytes <= 8_500_000, "{bytes} bytes in datasets");
+    assert!(bytes <= 14_000_000, "{bytes} bytes in datasets");
 }
 
 #[test]

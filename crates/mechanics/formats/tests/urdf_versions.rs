@@ -3,6 +3,7 @@
 use crate::share::one_of;
 use featherbench_formats::urdf::{self, Options};
 use featherbench_model::Description;
+use featherbench_spatial::larger;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -35,7 +36,7 @@ fn words<const N: usize>(name: &str, numbers: [f64; N]) -> String {
 fn apart(a: &Description, b: &Description) -> f64 {
     let numbers =
         |robot: &Description| [&robot.bodies[0].joint.placement.rotation[..], &robot.bodies[0].inertia, &robot.bodies[0].com].concat();
-    numbers(a).iter().zip(numbers(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    numbers(a).iter().zip(numbers(b)).map(|(a, b)| (a - b).abs()).fold(0.0, larger)
 }
 
 /// A quaternion from rounded half angles has an error of a few ulps of one: six rounded operations an entry, and twice that in a rotation.

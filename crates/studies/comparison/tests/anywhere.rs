@@ -5,7 +5,7 @@
 //! has its size times |x_j| s_j / Σ |x_k| s_k, and it is drawn so that twice the gate is left of it.
 
 use crate::share::one_of;
-use featherbench_bench::measure::{Magnitudes, scaled_error};
+use featherbench_bench::measure::{Magnitudes, scaled_error, worst};
 use featherbench_bench::{Engine, Quantity, Robot};
 use featherbench_doubles::{Answer, Double, beside_native, doubles, gates};
 use featherbench_engines::Featherbench;
@@ -84,7 +84,7 @@ impl Lie {
         let (nv, probe) = (robot.states.nv, robot.probe());
         let column = self.entry % nv;
         let rates = [probe[column], probe[nv + column]];
-        let largest = rates.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let largest = rates.iter().map(|x| x.abs()).fold(0.0, worst);
         let size = (2.0 * GATE).max(self.size) * magnitude / largest;
         let (body, row) = (self.entry / 12, self.entry % 6);
         for (place, rate) in rates.iter().enumerate() {

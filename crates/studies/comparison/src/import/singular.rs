@@ -1,6 +1,7 @@
 //! A robot whose mass matrix is singular: it has no forward dynamics, in whatever engine. That is told once, before engines differ by it.
 
 use featherbench_bench::Robot;
+use featherbench_bench::measure::worst;
 use featherbench_dynamics::mass_matrix;
 use nalgebra::DMatrix;
 
@@ -75,7 +76,7 @@ fn moving(factor: &DMatrix<f64>, order: &[usize], k: usize) -> Vec<usize> {
         let known: f64 = (i + 1..=k).map(|j| factor[(order[j], i)] * z[j]).sum();
         z[i] = -known / factor[(order[i], i)];
     }
-    let largest = z.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let largest = z.iter().map(|x| x.abs()).fold(0.0, worst);
     let mut dofs: Vec<usize> = (0..=k).filter(|&i| z[i].abs() > 1e-3 * largest).map(|i| order[i]).collect();
     dofs.sort_unstable();
     dofs
