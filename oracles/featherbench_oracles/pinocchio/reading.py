@@ -136,9 +136,7 @@ def _parts(joint: pin.JointModel) -> Iterator[tuple[pin.JointModel, Place]]:
         yield part, _place(placement)
 
 
-def _names(
-    model: pin.Model, i: int, count: int, bodies: Sequence[ElementTree.Element], carried: dict[int, pin.Frame]
-) -> list[str]:
+def _names(model: pin.Model, i: int, count: int, bodies: Sequence[ElementTree.Element], carried: dict[int, pin.Frame]) -> list[str]:
     """Name the parts of joint i. Pinocchio does not keep their names; those of the file are taken if its body has as many joints."""
     link = _carried(model, carried, i)
     for body in bodies:
