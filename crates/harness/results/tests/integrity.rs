@@ -55,7 +55,7 @@ fn a_file_that_is_missing_or_not_listed_is_named() {
         assert!(matches!(&error, ResultsError::Absent { path: absent, .. } if *absent == path), "{error}");
         fs::write(&path, kept).unwrap();
     }
-    Checksums::of(folder.path(), &[CSV_NAME, RUN_NAME]).unwrap().write().unwrap();
+    Checksums::of(folder.path(), &[CSV_NAME, RUN_NAME, "samples.csv"]).unwrap().write().unwrap();
     let error = read_run(folder.path()).unwrap_err().to_string();
     assert!(error.contains("has no checksum of schema.json"), "{error}");
     fs::remove_file(folder.path().join(CHECKSUMS_NAME)).unwrap();

@@ -123,7 +123,7 @@ fn an_honest_engine_passes_for_each_quantity_that_it_offers() {
     assert!(red(&rows).is_empty(), "{rows:#?}");
     let asked: BTreeSet<&str> = rows.iter().map(|row| row.params.as_str()).collect();
     // The probe replaces M on big robots only, and there is none.
-    assert_eq!((rows.len(), asked.len()), (14, 14));
+    assert_eq!((rows.len(), asked.len()), (15, 15));
     assert!(rows.iter().all(|row| row.relation == Some(Relation::Eq) && row.bound == Some(0.0) && row.quantity == "repeatability"));
 }
 
