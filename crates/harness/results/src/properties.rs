@@ -21,8 +21,6 @@ words! {
         SingularMass = "singular_mass",
         /// At rest at the neutral configuration the robot does not fall: its accelerations are exactly zero.
         Balanced = "balanced",
-        /// At rest at the neutral configuration all terms of a joint's force are exactly zero: an error has nothing to be relative to.
-        Weightless = "weightless",
         /// κ(M) at the neutral configuration is beyond 2²⁴, which is more than single precision holds. Up to 256 degrees of freedom.
         BeyondSingle = "beyond_single",
         /// URDF: the inertia of a link has a negative principal moment.

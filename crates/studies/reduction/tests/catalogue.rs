@@ -40,7 +40,7 @@ fn every_known_deviation_and_every_reproduction_has_a_line() {
         engine: "drake".into(),
         metric: "pairwise".into(),
         reference: "mujoco".into(),
-        params: r#"{"deviation":"weightless"}"#.into(),
+        params: r#"{"deviation":"singular-mass"}"#.into(),
         ..far.clone()
     };
     let rows = [far, elsewhere, failing, against];
@@ -66,7 +66,7 @@ fn every_known_deviation_and_every_reproduction_has_a_line() {
     assert!(found.cell == "3f2a" && finding.fault == Fault::Known("far-base".into()));
     assert_eq!(of("drake-fd-aba_world-fails").found[0].1.fault, Fault::Unknown);
     assert!(of("pinocchio-zyx-aba").found.is_empty() && why("pinocchio-zyx-aba").contains("fd of operations"));
-    assert!(why("drake-weightless").contains("difference from mujoco"));
+    assert!(why("drake-singular-mass").contains("difference from mujoco"));
     assert!(why("pinocchio-height-field").contains("reading a file"));
     assert!(why("pinocchio-world-aba").contains("no row shows it"));
     assert!(why("dart-zyx-aba").contains("no row of dart"));

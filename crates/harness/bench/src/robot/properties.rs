@@ -1,6 +1,6 @@
 //! The properties of a robot, computed from its description, its states and its file. Known deviations are told by them.
 
-use crate::measure::{Magnitudes, worst};
+use crate::measure::worst;
 use crate::{FileFormat, Robot};
 use featherbench_dynamics::{Bias, Crba, TreeSparse};
 use featherbench_model::{BodyDescription, JointKind, JointType, Warning};
@@ -60,10 +60,6 @@ impl Robot {
             Feature::ImpossibleBody => self.has_impossible_body(),
             Feature::SingularMass => self.mass_matrix().is_some_and(|mass| mass.diagonal().any(|entry| entry <= 0.0)),
             Feature::Balanced => self.at_rest().any(|state| self.is_balanced(state)),
-            Feature::Weightless => self.at_rest().any(|state| {
-                let at = Magnitudes::new(self, state);
-                [at.joint_force, at.bias_force].iter().flatten().any(|&terms| terms == 0.0)
-            }),
             Feature::BeyondSingle => self.condition().is_some_and(|condition| condition > SINGLE),
             Feature::NegativeMoment
             | Feature::FixedMimic
