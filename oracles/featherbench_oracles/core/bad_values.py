@@ -88,6 +88,36 @@ def _bad_word(word: str) -> bool:
     return not (math.isfinite(value) and value >= 0)
 
 
+def zeroed(links: Sequence[Link]) -> tuple[list[Link], dict[tuple[str, str], Array]]:
+    """Put zeros in place of bad values.
+
+    Parameters
+    ----------
+    links : sequence of Link
+        The links that the engine holds.
+
+    Returns
+    -------
+    list of Link
+        The same links without bad values.
+    dict of (str, str) to ndarray
+        What was held, by joint and field.
+    """
+    held: dict[tuple[str, str], Array] = {}
+    result = []
+    for link in links:
+        joints = []
+        for joint in link.joints:
+            dofs = dict(joint.dofs)
+            for field in FIELDS:
+                if field in dofs and bad(dofs[field]).any():
+                    held[joint.name, field] = dofs[field]
+                    dofs[field] = np.where(bad(dofs[field]), 0.0, dofs[field])
+            joints.append(replace(joint, dofs=dofs))
+        result.append(replace(link, joints=joints))
+    return result, held
+
+
 def left_out(path: Path, form: str, links: Sequence[Link], notes: list[Header]) -> list[Link]:
     """Take bad values out of the links that an engine holds, and tell them.
 
@@ -107,18 +137,7 @@ def left_out(path: Path, form: str, links: Sequence[Link], notes: list[Header]) 
     list of Link
         The same links with zeros in place of bad values.
     """
-    held: dict[tuple[str, str], Array] = {}
-    result = []
-    for link in links:
-        joints = []
-        for joint in link.joints:
-            dofs = dict(joint.dofs)
-            for field in FIELDS:
-                if field in dofs and bad(dofs[field]).any():
-                    held[joint.name, field] = dofs[field]
-                    dofs[field] = np.where(bad(dofs[field]), 0.0, dofs[field])
-            joints.append(replace(joint, dofs=dofs))
-        result.append(replace(link, joints=joints))
+    result, held = zeroed(links)
     for value in written(path, form):
         theirs = held.pop((value.joint, PLACES[form][1][value.attribute]), None)
         owner = f"joint '{value.joint}'" if value.joint else "a class or a joint without a name"

@@ -97,7 +97,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
 def _described(spec: mj.MjSpec, model: mj.MjModel) -> Header:
     """Describe a compiled model."""
     names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
-    links = without_free_armature([_link(spec, model, names, i) for i in range(1, model.nbody)], [])
+    links, _ = bad_values.zeroed(without_free_armature([_link(spec, model, names, i) for i in range(1, model.nbody)], []))
     gravity = np.zeros(3) if model.opt.disableflags & mj.mjtDisableBit.mjDSBL_GRAVITY else model.opt.gravity
     return describe(spec.modelname or "variant", gravity, links)
 
