@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import NoReturn
 
 import numpy as np
@@ -182,6 +183,8 @@ def test_an_engine_has_the_abilities_of_its_members() -> None:
     hello, _ = session.answer({"op": "hello"}, {})
     assert set(hello) == {"protocol", "engine", "version", "build", "methods", "rods"}
     assert hello["rods"] == ["any"]
+    # Some wheels need a newer Python than others: the one that runs the engine is told.
+    assert hello["build"] == {"language": "Python", "python": ".".join(map(str, sys.version_info[:3]))}
     for lacking in ({"op": "rod", "method": "other"}, {"op": "residual"}, {"op": "loops", "model": GOOD}):
         with pytest.raises(Unsupported, match="stranger"):
             session.answer(lacking, {})

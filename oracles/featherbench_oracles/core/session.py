@@ -7,6 +7,7 @@ Every answer is computed for one state at a time. A function `(robot, question) 
 from __future__ import annotations
 
 import os
+import platform
 import sys
 import traceback
 from collections.abc import Callable
@@ -126,7 +127,8 @@ class Session:
         """Name the engine and its methods."""
         engine = self.engine
         methods = {quantity: list(by_method) for quantity, by_method in engine.quantities.items()}
-        hello = {"protocol": PROTOCOL, "engine": engine.name, "version": engine.version, "build": engine.build, "methods": methods}
+        build = {**engine.build, "python": platform.python_version()}
+        hello = {"protocol": PROTOCOL, "engine": engine.name, "version": engine.version, "build": build, "methods": methods}
         listed = {
             "contact_solvers": self.contacts.solvers,
             "contact_relaxations": self.contacts.relaxations,
