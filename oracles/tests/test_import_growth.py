@@ -9,9 +9,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+
+from featherbench_oracles.core import reading as files
 
 OURS = "featherbench_oracles"
 LINKS = 60
@@ -65,3 +68,30 @@ def test_reading_is_linear(engine: str, tmp_path: Path) -> None:
         counts.append(steps[0] / links)
     assert counts[0] > 100, "the steps are those of our modules"
     assert max(counts[1] / counts[0], counts[2] / counts[1]) < GROWTH / 2, counts
+
+
+class Compared(str):
+    """A name that counts how often it is compared, which the instructions of the interpreter do not show."""
+
+    __slots__ = ()
+    times = 0
+
+    def __eq__(self, other: object) -> bool:
+        """Compare as text."""
+        Compared.times += 1
+        return str.__eq__(self, other)
+
+    __hash__ = str.__hash__
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_roots_are_found_without_comparing_each_name_with_each(seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The names of drawn trees, several of them in one file, are looked up; the roots are those that nothing carries."""
+    random = np.random.default_rng(seed)
+    links, trees = int(random.integers(100, 400)), int(random.integers(1, 5))
+    names = [str(name) for name in random.permutation(links)]
+    rows = {"link": [("name", name) for name in names], "child": [("link", name) for name in names[trees:]]}
+    monkeypatch.setattr(files, "elements", lambda _, tag: [ElementTree.Element(tag, {key: Compared(name)}) for key, name in rows[tag]])
+    monkeypatch.setattr(Compared, "times", 0)
+    assert files.roots(tmp_path) == names[:trees]
+    assert Compared.times <= 2 * links, Compared.times

@@ -365,6 +365,13 @@ def elements(path: Path, tag: str) -> Iterator[ElementTree.Element]:
     return ElementTree.parse(path).getroot().iter(tag)
 
 
+def roots(path: Path) -> list[str]:
+    """Find the links of a URDF that no joint carries, in the file's order."""
+    carried = {child.get("link") for child in elements(path, "child")}
+    names = (link.get("name") for link in elements(path, "link"))
+    return [name for name in names if name is not None and name not in carried]
+
+
 _COLOURS = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")  # the escape sequences of terminals
 
 

@@ -25,7 +25,7 @@ from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.loaded import loaded
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading
-from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, inertial, note, overheard
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, inertial, note, overheard, roots
 from featherbench_oracles.core.robot import Description
 
 TYPES = {
@@ -101,10 +101,7 @@ def _joints(plant: MultibodyPlant) -> list[tree.Joint]:
 
 def _stand(plant: MultibodyPlant, path: Path, base: str, notes: list[Header]) -> None:
     """Weld a URDF's root link to the world for a fixed base. A root with the name `world` is the world already."""
-    links, carried = ([element.get(key) for element in elements(path, tag)] for tag, key in (("link", "name"), ("child", "link")))
-    for root in links:
-        if root in carried or root is None:
-            continue
+    for root in roots(path):
         if root == "world" and base == "free":
             notes.append(note("root_welded", root, "Drake takes a link called world for the world"))
         if root != "world" and base == "fixed":
