@@ -1,4 +1,5 @@
 //! The tests of these studies as one program: so shared modules are compiled once.
 
+mod offers;
 mod registry;
 mod sections;

@@ -11,7 +11,7 @@ fn suites() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../datasets/suites")
 }
 
-fn setup(suite: &Suite, live: bool) -> Setup<'_> {
+pub fn setup(suite: &Suite, live: bool) -> Setup<'_> {
     let refused = || NoAnswer::NotOffered("a test".into());
     let (reproduce, measure) = (Arc::new(move |_: &str, _: u64| Err(refused())), Arc::new(move |_: &Question| Err(refused())));
     Setup { suite, live, program: "", reproduce, measure }

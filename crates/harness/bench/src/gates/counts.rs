@@ -64,7 +64,9 @@ impl Counts {
     /// The counts of a run: those of the rows that come out the same on every machine, of our engine and of the others that are named.
     pub fn of(suite: &str, engines: &[String], rows: &[Row]) -> Self {
         let mut found: BTreeMap<[String; 4], (BTreeSet<&str>, u64)> = BTreeMap::new();
-        let counted = |row: &&Row| row.kind == Kind::Exact && (row.engine == crate::OWN || engines.contains(&row.engine));
+        // A row without a quantity says that an engine offers nothing of a study.
+        let counted =
+            |row: &&Row| row.kind == Kind::Exact && !row.quantity.is_empty() && (row.engine == crate::OWN || engines.contains(&row.engine));
         for row in rows.iter().filter(counted) {
             let (cells, count) = found.entry([suite, &row.study, &row.engine, &row.quantity].map(str::to_owned)).or_default();
             cells.insert(&row.cell);

@@ -5,6 +5,7 @@
 pub(crate) mod cell;
 pub(crate) mod entries;
 mod fingerprint;
+mod offers;
 pub mod params;
 pub mod provenance;
 pub mod shard;
@@ -19,7 +20,7 @@ use crate::shard::{Shard, hash_of};
 use crate::{Cell, HarnessError, Lost, NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Robot};
 use featherbench_results::{CHECKSUMS_NAME, Dictionary, Row, RunInfo};
 use rayon::prelude::*;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -205,7 +206,9 @@ impl Run {
         let mut rows: Vec<Row> = Vec::new();
         for study in studies {
             let start = Instant::now();
-            let cells = plan(study.as_ref(), context, keep);
+            let whole = study.plan(context);
+            let engines: BTreeSet<String> = whole.iter().map(|cell| cell.engine.clone()).collect();
+            let cells = kept(study.as_ref(), whole, keep);
             if let Some(progress) = progress {
                 complete(study.as_ref(), context, &cells, &store, progress)?;
             }
@@ -219,6 +222,7 @@ impl Run {
             } else {
                 compare_stored(study.as_ref(), context, cells, &store, &mut rows)?;
             }
+            rows.extend(offers::rows(study.as_ref(), context, &engines, keep));
             self.info.studies.push(study.name().into());
             self.info.seconds.insert(study.name().into(), start.elapsed().as_secs_f64());
         }
@@ -241,7 +245,11 @@ impl Run {
 
 /// The cells of a study that a filter accepts. If there are any, the cells that belong to no robot come with them.
 pub fn plan(study: &dyn Study, context: &Context, keep: &(dyn Fn(&Cell) -> bool + Sync)) -> Vec<Cell> {
-    let kept: Vec<Cell> = study.plan(context).into_iter().filter(|cell| keep(cell) || study.is_common(cell)).collect();
+    kept(study, study.plan(context), keep)
+}
+
+fn kept(study: &dyn Study, whole: Vec<Cell>, keep: &(dyn Fn(&Cell) -> bool + Sync)) -> Vec<Cell> {
+    let kept: Vec<Cell> = whole.into_iter().filter(|cell| keep(cell) || study.is_common(cell)).collect();
     if kept.iter().all(|cell| study.is_common(cell) && !keep(cell)) { Vec::new() } else { kept }
 }
 

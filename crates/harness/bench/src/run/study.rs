@@ -110,6 +110,13 @@ pub trait Study: Sync {
         &[]
     }
 
+    /// Whether it asks an engine of the run, beside ours, for something. One that is asked and offers nothing of it gets a row that says so.
+    ///
+    /// By default those that it names.
+    fn asks(&self, engine: &dyn Engine) -> bool {
+        self.engines().contains(&engine.identity().name)
+    }
+
     /// Whether these must have a clock of their own.
     fn needs_clocks(&self) -> bool {
         self.measures_time()

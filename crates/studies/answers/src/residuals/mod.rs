@@ -21,7 +21,7 @@ pub(crate) mod section;
 mod tests;
 pub(crate) mod words;
 
-use featherbench_bench::{Asked, Cell, Context, Finished, NoSettings, Outcome, Robot, Study};
+use featherbench_bench::{Asked, Cell, Context, Engine, Finished, NoSettings, Outcome, Robot, Study};
 use featherbench_learning::Arm;
 use featherbench_results::Row;
 use featherbench_study::Entry;
@@ -56,6 +56,10 @@ struct Residuals {
 impl Study for Residuals {
     fn name(&self) -> &'static str {
         STUDY
+    }
+
+    fn asks(&self, _: &dyn Engine) -> bool {
+        true
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {

@@ -19,7 +19,7 @@ pub(crate) mod section;
 mod tests;
 pub(crate) mod words;
 
-use featherbench_bench::{Asked, Cell, Context, Finished, Identity, NoAnswer, Outcome, Study};
+use featherbench_bench::{Asked, Cell, Context, Engine, Finished, Identity, NoAnswer, Outcome, Study};
 use featherbench_results::Row;
 use featherbench_scenes::{Question, systems};
 use featherbench_study::Entry;
@@ -104,6 +104,10 @@ impl Study for Scenes {
 
     fn engines(&self) -> &[String] {
         &self.settings.engines
+    }
+
+    fn asks(&self, _: &dyn Engine) -> bool {
+        true
     }
 
     /// One cell for each engine that is asked and is not there, or moves no scenes: so a row says so.

@@ -14,7 +14,7 @@ pub(crate) mod words;
 
 use featherbench_bench::measure::{ForwardScale, scaled_error};
 use featherbench_bench::truth::{Truth, TruthModel, conditioning_bound};
-use featherbench_bench::{Asked, Cell, Context, DENSE_LIMIT, Finished, NoSettings, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Asked, Cell, Context, DENSE_LIMIT, Engine, Finished, NoSettings, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::TreeSparse;
 use featherbench_results::{Row, Verdict};
 use featherbench_study::{Entry, row, unanswered};
@@ -82,6 +82,10 @@ impl Study for Accuracy {
 
     fn compares_all(&self) -> bool {
         false
+    }
+
+    fn asks(&self, _: &dyn Engine) -> bool {
+        true
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {

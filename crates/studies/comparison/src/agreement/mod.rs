@@ -60,6 +60,10 @@ impl Study for Agreement {
         false
     }
 
+    fn asks(&self, _: &dyn Engine) -> bool {
+        true
+    }
+
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
         for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {

@@ -16,7 +16,9 @@ pub(crate) mod words;
 use featherbench_bench::measure::{ForwardScale, ratio, scaled_error, worst};
 use featherbench_bench::statistics::quantile_of;
 use featherbench_bench::truth::TrueDerivatives;
-use featherbench_bench::{Asked, Cell, Context, DENSE_LIMIT, Finished, NoAnswer, OWN, Outcome, Quantity, Robot, Study, derivative_floor};
+use featherbench_bench::{
+    Asked, Cell, Context, DENSE_LIMIT, Engine, Finished, NoAnswer, OWN, Outcome, Quantity, Robot, Study, derivative_floor,
+};
 use featherbench_results::{Row, Verdict, canonical_json};
 use featherbench_robots::Case;
 use featherbench_study::{Entry, row, unanswered};
@@ -70,6 +72,10 @@ impl Study for Derivatives {
 
     fn compares_all(&self) -> bool {
         false
+    }
+
+    fn asks(&self, _: &dyn Engine) -> bool {
+        self.peers
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {

@@ -137,6 +137,10 @@ impl Study for Repeatability {
         true
     }
 
+    fn asks(&self, engine: &dyn Engine) -> bool {
+        engine.identity().source != EngineSource::Recorded
+    }
+
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
         let live = context.engines.iter().filter(|engine| engine.identity().source != EngineSource::Recorded);

@@ -17,7 +17,9 @@ pub(crate) mod section;
 pub(crate) mod words;
 
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
-use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Stepper, Study, params};
+use featherbench_bench::{
+    Asked, Cell, Context, Engine, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Stepper, Study, params,
+};
 use featherbench_dynamics::{energy, forward_dynamics};
 use featherbench_results::{Row, Verdict};
 use featherbench_robots::Case;
@@ -53,6 +55,10 @@ impl Study for Steps {
 
     fn compares_all(&self) -> bool {
         false
+    }
+
+    fn asks(&self, _: &dyn Engine) -> bool {
+        true
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {

@@ -10,7 +10,7 @@
 
 pub(crate) mod words;
 
-use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Asked, Cell, Context, Engine, Finished, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::{Crba, Ltdl, TreeSparse};
 use featherbench_model::Description;
 use featherbench_results::{Relation, Row, Verdict};
@@ -48,6 +48,10 @@ impl Study for OperationCounts {
 
     fn compares_all(&self) -> bool {
         false
+    }
+
+    fn asks(&self, _: &dyn Engine) -> bool {
+        true
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
