@@ -16,7 +16,7 @@ mod tests;
 mod witness;
 pub(crate) mod words;
 
-use featherbench_bench::{Asked, Cell, Context, Finished, NoSettings, Outcome, Study};
+use featherbench_bench::{Asked, Cell, Context, Engine, Finished, NoSettings, Outcome, Study};
 use featherbench_results::Row;
 use featherbench_study::Entry;
 use featherbench_study::known::{Case, KnownAnswers, Number, count, error, failed, largest, told};
@@ -58,6 +58,11 @@ impl Study for Identification {
 
     fn engines(&self) -> &[String] {
         &self.witnesses
+    }
+
+    /// With witnesses, every engine of the run is one.
+    fn asks(&self, _: &dyn Engine) -> bool {
+        !self.witnesses.is_empty()
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
