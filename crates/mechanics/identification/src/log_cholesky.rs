@@ -102,14 +102,16 @@ impl LogCholesky {
     /// The slope is a symmetric Λ with `cost = tr(Λ P)`. A change of U adds `tr(Λ dU dUᵀ) = ‖Λ^½ dU‖²`. At the least cost on the edge of what
     /// can exist, Λ has no negative eigenvalue. Elsewhere such eigenvalues are left out.
     pub fn curvature(&self, slope: &[f64; PARAMETERS]) -> SMatrix<f64, 16, PARAMETERS> {
+        if !slope.iter().all(|slope| slope.is_finite()) {
+            return SMatrix::zeros();
+        }
         let lambda: Matrix4<f64> = Matrix4::from_fn(|i, j| {
             let mut entry = Matrix4::zeros();
             entry[(i, j)] += 0.5;
             entry[(j, i)] += 0.5;
             PseudoInertia(entry).parameters().iter().zip(slope).map(|(change, slope)| change * slope).sum()
         });
-        // What is not a number has no eigenvalues, and adds nothing.
-        let Some(eigen) = lambda.try_symmetric_eigen(f64::EPSILON, 1000) else { return SMatrix::zeros() };
+        let eigen = lambda.symmetric_eigen();
         let root = Matrix4::from_diagonal(&eigen.eigenvalues.map(|value: f64| value.max(0.0).sqrt())) * eigen.eigenvectors.transpose();
         SMatrix::from_columns(&self.changes().map(|change| SVector::<f64, 16>::from_column_slice((root * change).as_slice())))
     }
