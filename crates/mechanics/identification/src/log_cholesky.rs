@@ -73,29 +73,46 @@ impl LogCholesky {
         PseudoInertia(u * u.transpose()).parameters()
     }
 
+    /// `∂U/∂φ`, of each number of φ.
+    fn changes(&self) -> [Matrix4<f64>; PARAMETERS] {
+        let u = self.factor();
+        std::array::from_fn(|k| {
+            let mut change = Matrix4::zeros();
+            match k {
+                0 => change = u,
+                1..=3 => change[(k - 1, k - 1)] = u[(k - 1, k - 1)],
+                _ => change[PLACES[k - 4]] = self.0[0].exp(),
+            }
+            change
+        })
+    }
+
     /// `∂π/∂φ`: a column per number of φ. Exact: `dP = dU Uᵀ + U dUᵀ`, and π is linear in P.
     pub fn jacobian(&self) -> SMatrix<f64, PARAMETERS, PARAMETERS> {
         let u = self.factor();
-        let scale = self.0[0].exp();
-        let mut jacobian = SMatrix::<f64, PARAMETERS, PARAMETERS>::zeros();
-        for column in 0..PARAMETERS {
-            let change = match column {
-                0 => u,
-                1..=3 => {
-                    let mut change = Matrix4::zeros();
-                    change[(column - 1, column - 1)] = u[(column - 1, column - 1)];
-                    change
-                }
-                _ => {
-                    let mut change = Matrix4::zeros();
-                    change[PLACES[column - 4]] = scale;
-                    change
-                }
-            };
+        let columns = self.changes().map(|change| {
             let half = change * u.transpose();
-            let of = PseudoInertia(half + half.transpose()).parameters();
-            jacobian.set_column(column, &SVector::from(of));
+            SVector::from(PseudoInertia(half + half.transpose()).parameters())
+        });
+        SMatrix::from_columns(&columns)
+    }
+
+    /// What the second order of P = U Uᵀ adds to a cost with this slope `∂cost/∂π`, where it adds: the square of these rows times a change of φ.
+    ///
+    /// The slope is a symmetric Λ with `cost = tr(Λ P)`. A change of U adds `tr(Λ dU dUᵀ) = ‖Λ^½ dU‖²`. At the least cost on the edge of what
+    /// can exist, Λ has no negative eigenvalue. Elsewhere such eigenvalues are left out.
+    pub fn curvature(&self, slope: &[f64; PARAMETERS]) -> SMatrix<f64, 16, PARAMETERS> {
+        if !slope.iter().all(|slope| slope.is_finite()) {
+            return SMatrix::zeros();
         }
-        jacobian
+        let lambda: Matrix4<f64> = Matrix4::from_fn(|i, j| {
+            let mut entry = Matrix4::zeros();
+            entry[(i, j)] += 0.5;
+            entry[(j, i)] += 0.5;
+            PseudoInertia(entry).parameters().iter().zip(slope).map(|(change, slope)| change * slope).sum()
+        });
+        let eigen = lambda.symmetric_eigen();
+        let root = Matrix4::from_diagonal(&eigen.eigenvalues.map(|value: f64| value.max(0.0).sqrt())) * eigen.eigenvectors.transpose();
+        SMatrix::from_columns(&self.changes().map(|change| SVector::<f64, 16>::from_column_slice((root * change).as_slice())))
     }
 }

@@ -7,3 +7,5 @@ mod excitation;
 mod identified;
 mod logs;
 mod ranks;
+#[path = "../../robots/tests/share.rs"]
+mod share;

@@ -2,6 +2,7 @@
 
 use featherbench_identification::{LogCholesky, PseudoInertia};
 use featherbench_robots::Random;
+use nalgebra::SVector;
 
 /// A body of drawn numbers, over six decades of mass.
 fn drawn(random: &mut Random) -> LogCholesky {
@@ -90,4 +91,29 @@ fn the_jacobian_is_that_of_differences() {
             }
         }
     }
+}
+
+/// U is linear in the s and t of φ: along them, the second difference of a cost tr(Λ P) with Λ ≽ 0 is twice what the rows say.
+#[test]
+fn the_curvature_is_that_of_differences() {
+    let mut random = Random::named(3, "log-Cholesky");
+    for _ in 0..20 {
+        let (phi, lambda) = (drawn(&mut random), PseudoInertia::of(&drawn(&mut random).parameters()).0);
+        let slope: [f64; 10] = std::array::from_fn(|k| {
+            let unit = PseudoInertia::of(&std::array::from_fn(|other| if other == k { 1.0 } else { 0.0 }));
+            (lambda * unit.0).trace()
+        });
+        let change: [f64; 10] = std::array::from_fn(|k| if k < 4 { 0.0 } else { random.uniform(-0.5, 0.5) });
+        let cost = |part: f64| -> f64 {
+            let moved = LogCholesky(std::array::from_fn(|k| phi.0[k] + part * change[k]));
+            moved.parameters().iter().zip(&slope).map(|(pi, slope)| pi * slope).sum()
+        };
+        let difference = 0.5 * (cost(1.0) - 2.0 * cost(0.0) + cost(-1.0));
+        let found = (phi.curvature(&slope) * SVector::from(change)).norm_squared();
+        // A quadratic function: rounding of its values alone.
+        assert!((difference - found).abs() <= 1e-13 * (cost(1.0) + cost(-1.0)), "{difference} {found}");
+        // A slope that falls everywhere has nothing that adds to the cost.
+        assert_eq!(phi.curvature(&slope.map(|slope| -slope)).norm(), 0.0);
+    }
+    assert_eq!(drawn(&mut random).curvature(&[f64::NAN; 10]).norm(), 0.0);
 }

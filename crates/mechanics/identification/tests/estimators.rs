@@ -1,11 +1,13 @@
 //! Estimators on samples whose parameters are known.
 
+use crate::share::one_of;
 use featherbench_identification::{
-    Arm, Base, ConsistentSettings, Gravity, IdentificationError, LinearModel, PseudoInertia, Samples, Scenario, Search, Stacking, Terms,
-    disturbed, excite, fit, log_cholesky, ordinary, scatter, student, total, weighted, whiteness,
+    Arm, Base, ConsistentSettings, Gravity, IdentificationError, Information, LinearModel, PseudoInertia, Samples, Scenario, Search,
+    Stacking, Terms, disturbed, excite, fit, log_cholesky, ordinary, scatter, student, total, weighted, whiteness,
 };
 use featherbench_robots::{Family, Random};
 use featherbench_spatial::{larger, smaller};
+use nalgebra::DVector;
 
 /// Nearly normal, mean 0, variance 1: a sum of twelve uniform numbers.
 fn noise(random: &mut Random) -> f64 {
@@ -152,6 +154,29 @@ fn consistent_estimates_predict_another_motion() {
     let found = log_cholesky(linear, &scenario.noisy(deviation, 1), &stacking, ConsistentSettings::default()).unwrap();
     println!("{} plain, {} consistent after {} steps", size(&plain.theta), size(&found.theta), found.steps);
     assert!(size(&found.theta) < 1.15 && size(&plain.theta) < 1.15);
+}
+
+/// Whatever the arm, the unknowns and the noise: an answer is found, and the truth, which is a body, does not fit better.
+#[test]
+fn consistent_estimates_are_found_whatever_the_noise() {
+    let (mut most, mut worst) = (0, 0.0);
+    for draw in (0..200).step_by(one_of(25)) {
+        let mut random = Random::named(draw, "noisy arm");
+        let terms = Terms { viscous: random.unit() < 0.5, coulomb: random.unit() < 0.5, armature: random.unit() < 0.5, offset: false };
+        let arm = Arm::general(2 + random.below(2), random.bits64() >> 1);
+        let scenario = Scenario::of(&arm, terms, 60 + random.below(90)).unwrap();
+        let (linear, noise) = (&scenario.linear, 10.0_f64.powf(random.uniform(-2.0, 0.0)));
+        let samples = scenario.noisy(noise, random.bits64() >> 1);
+        let stacking = Stacking::plain(linear);
+        let found = log_cholesky(linear, &samples, &stacking, ConsistentSettings::default()).unwrap_or_else(|e| panic!("draw {draw}: {e}"));
+        let information = Information::of(linear, &samples, &stacking).unwrap();
+        let cost = |theta: &[f64]| (information.factor() * DVector::from_column_slice(theta) - information.right()).norm_squared();
+        let ratio = cost(&found.theta) / cost(&scenario.truth);
+        (most, worst) = (most.max(found.steps), larger(worst, ratio));
+        assert!(ratio <= 1.0, "draw {draw}: {ratio} of the cost of the truth after {} steps", found.steps);
+        assert!(found.steps < 2000, "draw {draw}: {} steps", found.steps);
+    }
+    println!("{most} steps at most, {worst} of the cost of the truth at most");
 }
 
 #[test]

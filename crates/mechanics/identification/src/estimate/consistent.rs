@@ -8,6 +8,9 @@
 //! negative. The offsets are in it as they are. The start φ₀ is the description. The scale s is the longest column of ∂(Yθ)/∂φ at φ₀. The
 //! pull decides only what the torques do not tell. Y enters by its triangular factor: so a step costs O(p³), whatever the length of the
 //! log.
+//!
+//! With noise the best θ is on the edge of what can exist, and there a residual stays that Gauss and Newton's matrix knows nothing of: their steps
+//! along the edge are too long, and thousands of short ones are left. So a step has the second order of P = U Uᵀ, and of the logarithms, too.
 
 use super::sizes;
 use crate::{IdentificationError, Information, Kind, LinearModel, LogCholesky, PseudoInertia, Samples, Stacking};
@@ -44,9 +47,10 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// A pull of 1e-6 moves a parameter that the torques tell by 1e-12 of its distance, times its condition squared.
+    /// A pull of 1e-8 moves a parameter that the torques tell by 1e-16 of its distance, times its condition squared. With 1e-6, ten of 200 drawn
+    /// estimates fitted worse than the truth, where noise was small.
     fn default() -> Self {
-        Self { pull: 1e-6, steps: 4000, end: 1e-10, gain: 1e-6 }
+        Self { pull: 1e-8, steps: 4000, end: 1e-10, gain: 1e-6 }
     }
 }
 
@@ -133,6 +137,24 @@ fn parameters(linear: &LinearModel, phi: &DVector<f64>) -> (DVector<f64>, DMatri
     (theta, jacobian)
 }
 
+/// Rows whose square is the second order of θ(φ) in a cost of this slope `∂cost/∂θ`, as far as it adds to the cost.
+fn curvature(linear: &LinearModel, phi: &DVector<f64>, slope: &DVector<f64>) -> DMatrix<f64> {
+    let (bodies, count) = (linear.description().bodies.len(), phi.len());
+    let (inertial, each) = (PARAMETERS * bodies, 16);
+    let mut rows = DMatrix::zeros(each * bodies + count - inertial, count);
+    for body in 0..bodies {
+        let at = PARAMETERS * body;
+        let own = LogCholesky(std::array::from_fn(|k| phi[at + k]));
+        rows.view_mut((each * body, at), (each, PARAMETERS)).copy_from(&own.curvature(&std::array::from_fn(|k| slope[at + k])));
+    }
+    for (k, unknown) in linear.unknowns().iter().enumerate().skip(inertial) {
+        if !matches!(unknown.kind, Kind::Offset) {
+            rows[(each * bodies + k - inertial, k)] = (0.5 * slope[k].max(0.0) * phi[k].exp()).sqrt();
+        }
+    }
+    rows
+}
+
 /// Levenberg and Marquardt from φ, in place. Returns the steps.
 fn descend(
     linear: &LinearModel,
@@ -154,8 +176,10 @@ fn descend(
     let (mut now, mut damping, mut growth, mut step, mut flat) = (cost(&rest, phi), 1e-3, 2.0, f64::INFINITY, 0);
     for taken in 0..settings.steps {
         // Least squares of the stacked rows, which keep their condition number: [J; pull; √λ pull'] δ = −[r; pull (φ − φ₀); 0].
-        let mut rows = jacobian.clone().insert_rows(factor.nrows(), 2 * count, 0.0);
-        let mut sides = (-&rest).insert_rows(factor.nrows(), 2 * count, 0.0);
+        let curvature = curvature(linear, phi, &(factor.tr_mul(&rest) * 2.0));
+        let mut rows = jacobian.clone().insert_rows(factor.nrows(), 2 * count + curvature.nrows(), 0.0);
+        let mut sides = (-&rest).insert_rows(factor.nrows(), 2 * count + curvature.nrows(), 0.0);
+        rows.rows_mut(factor.nrows() + 2 * count, curvature.nrows()).copy_from(&curvature);
         for k in 0..count {
             let size = jacobian.column(k).norm() + pull;
             rows[(factor.nrows() + k, k)] = pull;
@@ -171,7 +195,7 @@ fn descend(
         let change = &change * (REACH / change.amax().max(REACH));
         step = change.norm() / (1.0 + phi.norm());
         let trial = &*phi + &change;
-        let promised = now - cost(&(&rest + &jacobian * &change), &trial);
+        let promised = now - cost(&(&rest + &jacobian * &change), &trial) - (&curvature * &change).norm_squared();
         let (trial_rest, trial_jacobian) = columns(&trial);
         let next = cost(&trial_rest, &trial);
         if next.is_finite() && next <= now {

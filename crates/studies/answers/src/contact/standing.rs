@@ -2,11 +2,12 @@
 //! solver answers them.
 //!
 //! The robot meets the ground with all feet at once, moves sideways too, and springs in its joints hold it up. Nonsmooth
-//! Gauss–Seidel steps it in time; where its cap is reached, Newton's method does, or more sweeps.
+//! Gauss–Seidel steps it in time. On one pad with more rows than it has motions the sweeps may gain ever less, and Newton's matrix is singular:
+//! then Newton's method steps it, or ADMM, whose matrix has an inverse whatever the rank, or more sweeps.
 
 use super::{Case, Number, count, error, failed, largest, told};
 use featherbench_bench::{ContactSteps, NoAnswer};
-use featherbench_contact::{BlockGaussSeidel, Grounded, Newton, Problem, Solver, Touch, solver};
+use featherbench_contact::{Admm, BlockGaussSeidel, Grounded, Newton, Problem, Solver, Touch, solver};
 use featherbench_dynamics::Kinematics;
 use featherbench_model::{Description, Model, neutral};
 use featherbench_robots::{Family, Random};
@@ -194,8 +195,8 @@ impl Standing {
             }
             let by = |solver: &dyn Solver| robot.step(&q, &v, &tau, STEP, solver);
             let sweeps = |sweeps| BlockGaussSeidel { sweeps, ..BlockGaussSeidel::default() };
-            let stepped = by(&sweeps(2000)).or_else(|_| by(&Newton::default())).or_else(|_| by(&sweeps(1_000_000)));
-            let stepped = stepped.map_err(failed)?;
+            let stepped = by(&sweeps(2000)).or_else(|_| by(&Newton::default())).or_else(|_| by(&Admm::default()));
+            let stepped = stepped.or_else(|_| by(&sweeps(1_000_000))).map_err(failed)?;
             (q, v) = (stepped.q, stepped.v);
         }
         Ok(problems)
@@ -297,7 +298,7 @@ mod tests {
     /// Every step of a run has an answer, whatever the seed.
     #[test]
     fn runs_do_not_depend_on_the_seed() {
-        for seed in (1..=4).step_by(crate::share::one_of(2)) {
+        for seed in (8..=47).step_by(crate::share::one_of(20)) {
             for stand in Stand::ALL {
                 let problems = stand.make().unwrap().run(seed).unwrap_or_else(|error| panic!("{}, seed {seed}: {error}", stand.name()));
                 assert_eq!(problems[0].problem.contacts().len(), stand.contacts());
