@@ -17,7 +17,7 @@ struct Other {
 }
 
 impl Other {
-    fn new(name: &str, able: bool) -> Box<dyn Engine> {
+    fn boxed(name: &str, able: bool) -> Box<dyn Engine> {
         let identity = Identity { name: name.into(), version: "1".into(), source: EngineSource::Live, build: Default::default() };
         Box::new(Self { identity, able: able.then(Featherbench::new) })
     }
@@ -86,7 +86,7 @@ fn no_study_is_silent_about_an_engine_that_offers_nothing() {
     let description = Family::parse("chain:n=2,layout=planar").unwrap().generate().unwrap();
     let robots = [Robot::new(&description, "chain", ModelOrigin::Generated, 2, 1).unwrap()];
     let asks = |study: &dyn Study, able: bool| {
-        let engines: [Box<dyn Engine>; 2] = [Box::new(Featherbench::new()), Other::new("mute", able)];
+        let engines: [Box<dyn Engine>; 2] = [Box::new(Featherbench::new()), Other::boxed("mute", able)];
         let context = Context { robots: &robots, engines: &engines, gates: &gates, seed: 1 };
         study.plan(&context).iter().any(|cell| cell.engine == "mute")
     };
@@ -94,7 +94,7 @@ fn no_study_is_silent_about_an_engine_that_offers_nothing() {
     for (name, suite) in suites() {
         tried.insert(name.clone());
         let of = study(&suite, &name);
-        let engines: [Box<dyn Engine>; 2] = [Box::new(Featherbench::new()), Other::new("mute", false)];
+        let engines: [Box<dyn Engine>; 2] = [Box::new(Featherbench::new()), Other::boxed("mute", false)];
         let context = Context { robots: &robots, engines: &engines, gates: &gates, seed: 1 };
         if !(of.asks(engines[1].as_ref()) || asks(of.as_ref(), true)) {
             continue;
