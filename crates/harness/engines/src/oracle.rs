@@ -39,6 +39,8 @@ pub struct Oracle {
     limits: Limits,
     clock: Arc<dyn Clock>,
     idle: Mutex<Vec<Session>>,
+    /// Files that it does not import, each with the reason: they are not asked for again, as each attempt may take the time limit.
+    refused: Mutex<Vec<(RobotFile, NoAnswer)>>,
 }
 
 /// A part of the identity of an oracle whose times are estimates.
@@ -83,7 +85,7 @@ impl Oracle {
             identity.build.insert("clock".into(), ESTIMATE.into());
         }
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
-        Ok(Self { identity, hello, command, limits, clock, idle: Mutex::new(vec![session]) })
+        Ok(Self { identity, hello, command, limits, clock, idle: Mutex::new(vec![session]), refused: Mutex::default() })
     }
 
     /// The same oracle under another name; the engine's own name goes into its build, where it differs.
@@ -159,7 +161,15 @@ impl Engine for Oracle {
     }
 
     fn read(&self, file: &RobotFile) -> Result<Import, NoAnswer> {
-        self.session()?.open()?.read(file)
+        let known = || self.refused.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, reason)) = known().iter().find(|(other, _)| other == file) {
+            return Err(reason.clone());
+        }
+        let read = self.session()?.open()?.read(file);
+        if let Err(reason) = &read {
+            known().push((file.clone(), reason.clone()));
+        }
+        read
     }
 
     fn prepare<'a>(

@@ -66,6 +66,24 @@ fn a_reading_that_is_no_robot_is_a_failure() {
     }
 }
 
+/// Each question about a file begins with its import. One that the engine refuses, or that ends its process, is asked for once.
+#[test]
+fn a_refused_file_is_asked_for_once() {
+    let refusals = [r#"echo '{"status":"error","reason":"line 3"}'"#, r#"echo '{"status":"unsupported","reason":"no meshes"}'"#, "exit 1"];
+    for refusal in refusals {
+        let trial = Trial::new(&Script::reading(&format!("echo \"$line\" >>read; {refusal}")), PATIENT);
+        let first = trial.read().unwrap_err();
+        for _ in 0..3 {
+            assert_eq!(trial.read().unwrap_err(), first, "{refusal}");
+        }
+        assert_eq!(trial.reads().len(), 1, "{refusal}: {:?}", trial.reads());
+        // Another file is another question.
+        let other = RobotFile { path: "/robots/other.urdf".into(), ..trial.file() };
+        assert!(trial.oracle.as_ref().unwrap().read(&other).is_err());
+        assert_eq!(trial.reads().len(), 2, "{refusal}");
+    }
+}
+
 #[test]
 fn an_engine_that_reads_another_robot_the_second_time_is_not_believed() {
     let trial = Trial::new(&Script::honest(), PATIENT);
