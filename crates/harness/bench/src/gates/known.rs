@@ -136,7 +136,7 @@ impl Known {
         self.robots.get(&row.robot)
     }
 
-    /// One condition per known deviation of the suite's engines and robots: it still occurs. If its size is measured, there is one more: it
+    /// One condition per known deviation of the suite's engines and robots: it still occurs, unless some seeds alone show it there. If its size is measured, there is one more: it
     /// has the known size on every robot. And there is one condition per lack.
     pub(crate) fn still_seen(&self, suite: &Suite, records: &[Row]) -> Vec<Expectation> {
         let asked = |engine: &String| suite.engines().contains(engine);
@@ -146,7 +146,9 @@ impl Known {
             if records.iter().any(|row| known.concerns(row) && robots.contains(row.robot.as_str())) {
                 let seen = records.iter().any(|row| self.is_excused(row, known));
                 let what = format!("known deviation of {}, '{}', still seen: {}", known.engine, known.id, known.reason);
-                conditions.push(Expectation::new(GateKind::Seen, what, 1, u64::from(seen)).about(Culprit::engine(&known.engine)));
+                if !self.is_rare(known, records) {
+                    conditions.push(Expectation::new(GateKind::Seen, what, 1, u64::from(seen)).about(Culprit::engine(&known.engine)));
+                }
                 conditions.extend(self.still_large(known, records));
             }
         }
@@ -168,6 +170,14 @@ impl Known {
             return measured;
         }
         records.iter().filter(|row| known.class.holds(&row.robot, self.properties(row))).map(|row| row.robot.as_str()).collect()
+    }
+
+    /// Whether a deviation has sizes on robots of a run, and no robot showed it at every seed.
+    fn is_rare(&self, known: &Deviation, records: &[Row]) -> bool {
+        let run: BTreeSet<&str> = records.iter().map(|row| row.robot.as_str()).collect();
+        let sizes = self.ranges.iter().filter(|(key, range)| range.deviation == known.id && known.has(key) && run.contains(key.robot.as_str()));
+        let constant: Vec<bool> = sizes.map(|(_, range)| range.outside == range.seeds).collect();
+        !constant.is_empty() && !constant.contains(&true)
     }
 
     /// Whether a deviation is the cause of a row's verdict.
