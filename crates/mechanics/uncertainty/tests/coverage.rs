@@ -1,5 +1,5 @@
 //! Every 95 % interval holds the truth in 95 % of the draws: of means, variances, deviations, quantiles, indices and weights, by every kind of
-//! points, on robots, states, spreads, seeds and numbers of samples that are drawn.
+//! points. Robots, states, spreads, seeds and numbers of samples are drawn.
 
 use crate::share::one_of;
 use featherbench_model::{Distribution, Model};

@@ -1,4 +1,4 @@
-//! Causes on edits that nobody picked: any field of any body, several at once, by a rule or by none. No cause is named unless it gives all
+//! Causes on edits that no one picked: any field of any body, several at once, by a rule or by none. No cause is named unless it gives all
 //! numbers of the engine, and the named one is the planted one.
 
 use crate::share::one_of;

@@ -175,7 +175,8 @@ impl Known {
     /// Whether a deviation has sizes on robots of a run, and no robot showed it at every seed.
     fn is_rare(&self, known: &Deviation, records: &[Row]) -> bool {
         let run: BTreeSet<&str> = records.iter().map(|row| row.robot.as_str()).collect();
-        let sizes = self.ranges.iter().filter(|(key, range)| range.deviation == known.id && known.has(key) && run.contains(key.robot.as_str()));
+        let sizes =
+            self.ranges.iter().filter(|(key, range)| range.deviation == known.id && known.has(key) && run.contains(key.robot.as_str()));
         let constant: Vec<bool> = sizes.map(|(_, range)| range.outside == range.seeds).collect();
         !constant.is_empty() && !constant.contains(&true)
     }

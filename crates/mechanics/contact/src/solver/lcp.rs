@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// The complementarity problem of a contact problem, in the scales of [`Problem::scales`].
 ///
-/// Each contact has a scale of its own beside them, a power of two: its variables and rows are multiplied by it, σ divided, so that the
+/// Each contact has a scale of its own beside them, a power of two. Its variables and rows are multiplied by it, and σ is divided. So the
 /// entry of its normal is near 1 whatever the masses are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lcp {

@@ -22,8 +22,8 @@
 //!   A mimic that cannot be tied is an error that names the joints. With [`Options::independent_mimics`] there is a note instead of the
 //!   loop, and the joint is independent, as in engines by default.
 //! - Noted and not imported: visual and collision geometry, `safety_controller`, `calibration`, every element of `<robot>` that is
-//!   neither link nor joint, and every attribute that is not named here, such as `acceleration`, `deceleration` and `jerk` of `<limit>`
-//!   (version 1.2): the equations of motion have no such limits.
+//!   neither link nor joint, and every attribute that is not named here. `acceleration`, `deceleration` and `jerk` of `<limit>`
+//!   (version 1.2) are such: the equations of motion have no such limits.
 //!
 //! Limits: 10 MB, a million XML nodes, no document type declaration (hence no entities to expand). Nesting uses no stack.
 

@@ -294,7 +294,7 @@ fn gravity(ours: &Description, theirs: &Description) -> Option<SingleDifference>
     })
 }
 
-/// A joint by what the file names: readings give joints and bodies without a name their kind and number, and nobody finds these in the file.
+/// A joint by what the file names: import results call joints and bodies without a name by kind and number, which are not in the file.
 fn in_file(body: &BodyDescription) -> String {
     let numbered = |name: &str, kind: &str| name.strip_prefix(kind).is_some_and(|rest| rest.trim_start().parse::<usize>().is_ok());
     let (joint, body) = (&body.joint.name, &body.name);
