@@ -83,8 +83,8 @@ const TABLE_RUN: [&str; 7] = ["run", "--suite", "smoke", "--no-timing", "--engin
 #[test]
 fn an_external_engine_is_judged_by_what_it_answers() {
     let sandbox = with_table(":", 1.0);
-    sandbox.run(&[&TABLE_RUN[..], &["green"]].concat()).expect(0, &["4 not offered"]);
-    sandbox.run(&["gate", "green"]).expect(0, &["4 not offered"]);
+    sandbox.run(&[&TABLE_RUN[..], &["green"]].concat()).expect(0, &["7 not offered"]);
+    sandbox.run(&["gate", "green"]).expect(0, &["7 not offered"]);
     let rows = std::fs::read_to_string(sandbox.path("green/rows.csv")).unwrap();
     let of_table = |verdict: &str| rows.lines().filter(|row| row.contains(",mine,7,") && row.contains(&format!(",{verdict},"))).count();
     assert!(of_table("pass") > 3 && of_table("skip") == 4, "{rows}");
@@ -164,16 +164,16 @@ fn a_run_is_not_continued_with_another_program_of_an_external_engine() {
     let engine = ["--engine", "mine=sh 'shy oracle.sh'"];
     let with = |more: &[&'static str]| [&engine[..], more].concat();
     let asked = || std::fs::read(sandbox.path("out/outcomes.bin")).unwrap();
-    run(&with(&[])).expect(0, &["6 not offered"]);
+    run(&with(&[])).expect(0, &["7 not offered"]);
     let first = asked();
-    run(&with(&["--resume"])).expect(0, &["6 not offered"]);
+    run(&with(&["--resume"])).expect(0, &["7 not offered"]);
     assert_eq!(asked(), first, "nothing was asked twice");
     sandbox.write("shy oracle.sh", &SHY.replace("no such robot", "no robot today"));
     run(&with(&["--resume"])).expect(2, &["another program of engine mine", "--allow-mixed"]);
     run(&["--resume"]).expect(2, &["another program of engine mine", "none now"]);
     assert_eq!(asked(), first, "and nothing is lost");
-    run(&with(&["--resume", "--allow-mixed"])).expect(0, &["6 not offered"]);
-    run(&with(&["--resume"])).expect(0, &["6 not offered"]);
+    run(&with(&["--resume", "--allow-mixed"])).expect(0, &["7 not offered"]);
+    run(&with(&["--resume"])).expect(0, &["7 not offered"]);
 }
 
 #[test]

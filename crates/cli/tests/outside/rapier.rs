@@ -126,7 +126,7 @@ pub fn agrees(rapier: &Oracle) {
             }
         }
     }
-    assert_eq!(compared, 12 * 8);
+    assert_eq!(compared, 12 * 9);
 }
 
 /// It has armature, except in its energy.

@@ -29,7 +29,7 @@ pub(crate) fn rows(study: &dyn Study, context: &Context, planned: &BTreeSet<Stri
             params: "{}".into(),
             ..Row::default()
         };
-        let reason = format!("not offered: {name} has nothing that the study {} asks about the robots of this suite", study.name());
+        let reason = format!("{name} has nothing that the study {} asks about the robots of this suite", study.name());
         keep(&cell).then(|| blank.without_value(Verdict::Skip, reason))
     };
     silent.map(|engine| engine.identity()).filter_map(|identity| of((&identity.name, &identity.version))).collect()
