@@ -12,9 +12,9 @@ principle for all points of a body is one trace:
 (Uicker 1967; Hollerbach 1980.) E_k are constant matrices of se(3), because planar and universal joints are written as two or three simple
 ones. There are no angular velocities, cross products, Jacobians or inertia tensors; forward dynamics solves with Cholesky's factors of M.
 
-Numbers carry max(448, 106 + 7 n) bits, and answers are the nearest doubles. All of the description's doubles are taken exactly. Where they
-stand for a direction or a rotation, the nearest one is meant: u / |u| for axes, p / |p| for quaternions, the orthogonal polar factor for
-placements' rotations. Else the question has no answer beyond 1e-16.
+Numbers carry max(448, 106 + 7 n) bits, and answers are the nearest doubles. All of the description's doubles are taken exactly, but where
+they stand for a direction or a rotation the nearest one is meant: u / |u| for axes, p / |p| for quaternions, the orthogonal polar factor
+for placements' rotations. The question has no answer beyond 1e-16 otherwise.
 
 | module | what it is |
 |---|---|

@@ -4,7 +4,7 @@ use featherbench_bench::{Gates, Suite};
 use featherbench_results::{Relation, Row, Verdict};
 
 fn row(engine: &str) -> Row {
-    Row { engine: engine.into(), study: "agreement".into(), ..Row::default() }
+    Row { engine: engine.into(), study: "agreement".into(), quantity: "id".into(), ..Row::default() }
 }
 
 /// The conditions that are not met.
