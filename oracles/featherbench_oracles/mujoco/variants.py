@@ -210,6 +210,8 @@ def _unit_inertials(bare: bool) -> Edit:
 
 EDITS: tuple[tuple[str, str, Edit], ...] = (
     ("gravity_ignored", "the gravity of <option> is not read", _without("option", "gravity")),
+    ("gravity_ignored", "the flag that turns gravity off is not read", _without("flag", "gravity")),
+    ("total_mass", "settotalmass is not read", _without("compiler", "settotalmass")),
     ("first_tree", "only the first body of the world is read", _first_tree),
     ("frame_skipped", "a <frame> is skipped with all that is in it", _without("frame")),
     ("world_pose", "the pose of a body that is fixed to the world is not read", _standing),

@@ -14,6 +14,7 @@ use featherbench_model::{BodyDescription, Description};
 fn cause(word: &str) -> Cause {
     match word {
         "gravity_ignored" => Cause::GravityIgnored,
+        "total_mass" => Cause::TotalMass,
         "first_tree" => Cause::FirstTree,
         "frame_skipped" => Cause::FrameSkipped,
         "world_pose" => Cause::WorldPose,
