@@ -1,8 +1,8 @@
 """What an MJCF would be to a parser that reads one thing of it otherwise: hypotheses about other engines, which their numbers decide.
 
 MuJoCo's compiler reads the file again, each time with one edit of its text: without its gravity, without all but the first body of the
-world, and so on. An engine whose robot is that of a variant in all that the edit changes reads the file so. Pairs of edits are variants
-too, as one parser may do both. An edit that changes nothing, and a variant that MuJoCo refuses, are left out.
+world, and so on. An engine whose robot is that of a variant in all that the edit changes reads the file so. Pairs and triples of edits are
+variants too, as one parser may do several. An edit that changes nothing, and a variant that MuJoCo refuses, are left out.
 """
 
 from __future__ import annotations
@@ -18,13 +18,14 @@ from xml.etree.ElementTree import Element
 import mujoco as mj
 import numpy as np
 
-from featherbench_oracles.core.algebra import skew
+from featherbench_oracles.core.algebra import Array, skew
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.reading import Place, turned
 
 Describe = Callable[[mj.MjSpec, mj.MjModel], Header]
 Edit = Callable[[Element], None]
 MOST_BODIES = 200  # of a robot that has variants: each costs a compilation
+MOST_OF_THREE = 60  # of a robot that has variants of three edits
 APART = ("contact", "tendon", "actuator", "equality", "sensor", "keyframe", "custom")  # names what an edit may remove, and is in no variant
 POSE = ("pos", "quat", "axisangle", "xyaxes", "zaxis", "euler")
 ONE = {"pos": "0 0 0", "mass": "1", "diaginertia": "1 1 1"}  # the inertial that DART gives a body, kg and kg m²
@@ -68,17 +69,24 @@ def variants(path: Path, describe: Describe, model: mj.MjModel, reference: Heade
 
     def read(edits: list[Edit]) -> Header | None:
         changed = copy.deepcopy(root)
-        for edit in edits:
-            edit(changed)
-        return _compiled(changed, path, describe)
+        try:
+            for edit in edits:
+                edit(changed)
+            spec = _read(changed, path)
+            return describe(spec, spec.compile())
+        except ValueError:  # MuJoCo does not accept it
+            return None
 
-    single = [(cause, text, edit) for cause, text, edit in EDITS if keep(cause, text, read([edit]))]
-    if not model.nmesh:  # meshes are read again by each compilation
-        for (cause, text, edit), (_, more, other) in combinations(single, 2):
-            keep(cause, f"{text}, and {more}", read([edit, other]), alone=False)
+    last = ("default_inertia", "every body has the engine's own 1 kg·m² about its centre of mass", _own_inertias(path))
+    single = [(cause, text, edit) for cause, text, edit in (*EDITS, last) if keep(cause, text, read([edit]))]
     undone = "the pose of a free body is undone by its turned-back rotation and the negative of its translation, which is not its inverse"
-    keep("free_pose", undone, _undone(reference, model))
+    keep("free_pose", undone, _placed(reference, model, lambda rotation, p: (np.eye(3), p - rotation @ p)))
+    kept = "the pose of a free body is the place of its joint"
+    keep("free_pose", kept, _placed(reference, model, lambda rotation, p: (rotation, p)))
     keep("axis_length", "the axis of an axisangle in an inertial is not made a unit vector", _long_axes(reference, root))
+    for count in (2, 3) if model.nbody <= MOST_OF_THREE else (2,):
+        for chosen in combinations(single, count):
+            keep(chosen[0][0], ", and ".join(text for _, text, _ in chosen), read([edit for _, _, edit in chosen]), alone=False)
     return found
 
 
@@ -98,14 +106,11 @@ def _whole(path: Path) -> Element:
     return root
 
 
-def _compiled(root: Element, path: Path, describe: Describe) -> Header | None:
-    """Compile and describe a variant, if MuJoCo accepts it."""
-    try:
-        spec = mj.MjSpec.from_string(ElementTree.tostring(root, encoding="unicode"))
-        spec.modelfiledir = str(path.parent)
-        return describe(spec, spec.compile())
-    except ValueError:
-        return None
+def _read(root: Element, path: Path) -> mj.MjSpec:
+    """Let MuJoCo read a variant."""
+    spec = mj.MjSpec.from_string(ElementTree.tostring(root, encoding="unicode"))
+    spec.modelfiledir = str(path.parent)
+    return spec
 
 
 # ---- edits -----------------------------------------------------------------------------------------------------------------------
@@ -186,18 +191,23 @@ def _empty_defaults(root: Element) -> None:
             default.remove(child)
 
 
-def _class_masses(root: Element) -> None:
-    """Take no mass and no density from default classes."""
-    for default in [inner for top in root if top.tag == "default" for inner in top.iter("default")]:
-        for geom in default.findall("geom"):
-            geom.attrib.pop("mass", None)
-            geom.attrib.pop("density", None)
+def _without_in_classes(tag: str, *keys: str) -> Edit:
+    """Take these attributes of a tag from no default class."""
+
+    def edit(root: Element) -> None:
+        for default in [inner for top in root if top.tag == "default" for inner in top.iter("default")]:
+            for child in default.findall(tag):
+                for key in keys:
+                    child.attrib.pop(key, None)
+
+    return edit
 
 
 def _unit_inertials(bare: bool) -> Edit:
     """Give bodies, or those without geoms, one kilogram and one kg m²."""
 
     def edit(root: Element) -> None:
+        _without("compiler", "inertiafromgeom")(root)
         for body in list(root.iter("body")):
             if bare and body.find("geom") is not None:
                 continue
@@ -206,6 +216,61 @@ def _unit_inertials(bare: bool) -> Edit:
             body.insert(0, Element("inertial", ONE))
 
     return edit
+
+
+def _own_inertias(path: Path) -> Edit:
+    """Give bodies the mass and centre of mass that they have, and one kg m² about it. It is the last edit of several."""
+
+    def edit(root: Element) -> None:
+        model = _read(root, path).compile()
+        bodies = [body for world in root.iter("worldbody") for body in world.iter("body")]
+        if len(bodies) != model.nbody - 1:  # bodies that are made by other elements have no places here
+            return
+        _without("compiler", "inertiafromgeom")(root)
+        for i, body in enumerate(bodies, 1):
+            for inertial in body.findall("inertial"):
+                body.remove(inertial)
+            if model.body_mass[i] > 0:
+                pos = " ".join(f"{x:.17g}" for x in model.body_ipos[i])
+                body.insert(0, Element("inertial", {"pos": pos, "mass": f"{model.body_mass[i]:.17g}", "diaginertia": "1 1 1"}))
+
+    return edit
+
+
+def _first_geoms(root: Element) -> None:
+    """Keep the first geom of each body."""
+    for body in root.iter("body"):
+        for geom in body.findall("geom")[1:]:
+            body.remove(geom)
+
+
+def _unseen_geoms(root: Element) -> None:
+    """Remove geoms that collide with nothing, by themselves or by their default class."""
+    keys = ("contype", "conaffinity")
+    defaults: dict[str, dict[str, str]] = {}
+
+    def gather(default: Element, inherited: dict[str, str]) -> None:
+        own = dict(inherited)
+        for geom in default.findall("geom"):
+            own |= {key: geom.attrib[key] for key in keys if key in geom.attrib}
+        defaults[default.get("class", "main")] = own
+        defaults.setdefault("main", own)
+        for inner in default.findall("default"):
+            gather(inner, own)
+
+    def walk(parent: Element, named: str) -> None:
+        for child in list(parent):
+            if child.tag == "geom":
+                held = defaults.get(child.get("class", named), {}) | child.attrib
+                if all(held.get(key, "1") == "0" for key in keys):
+                    parent.remove(child)
+            else:
+                walk(child, child.get("childclass", named))
+
+    for default in root.findall("default"):
+        gather(default, defaults.get("main", {}))
+    for world in root.iter("worldbody"):
+        walk(world, "main")
 
 
 EDITS: tuple[tuple[str, str, Edit], ...] = (
@@ -220,11 +285,14 @@ EDITS: tuple[tuple[str, str, Edit], ...] = (
     ("shell", "shellinertia is not read: the solid is taken", _without("geom", "shellinertia")),
     ("nested_classes", "nested default classes are not read", _empty_classes),
     ("defaults", "default classes are not read", _empty_defaults),
-    ("class_mass", "the mass and density of geoms in default classes are not read", _class_masses),
+    ("classes", "the mass and density of geoms in default classes are not read", _without_in_classes("geom", "mass", "density")),
+    ("classes", "the pos of joints in default classes is not read", _without_in_classes("joint", "pos")),
     ("childclass", "childclass is not read", _without("body", "childclass")),
     ("inertial_ignored", "inertials are not read: geoms give the mass", _without("inertial")),
     ("default_inertia", "every body has the engine's own 1 kg and 1 kg·m²", _unit_inertials(bare=False)),
     ("default_inertia", "bodies without geoms have the engine's own 1 kg and 1 kg·m²", _unit_inertials(bare=True)),
+    ("first_geoms", "only the first geom of a body has mass", _first_geoms),
+    ("unseen_geoms", "geoms that collide with nothing have no mass", _unseen_geoms),
     ("first_compiler", "only the first <compiler> is read", _first_compiler),
     ("euler_sequence", "eulerseq is not read: the sequence is xyz", _without("compiler", "eulerseq")),
     ("euler_sequence", "the letters of eulerseq are all read as small ones", _settings("eulerseq", str.lower)),
@@ -236,15 +304,14 @@ EDITS: tuple[tuple[str, str, Edit], ...] = (
 # ---- variants that MuJoCo cannot compile --------------------------------------------------------------------------------------------
 
 
-def _undone(reference: Header, model: mj.MjModel) -> Header | None:
-    """Describe free bodies on the placement (R, p)(R', -p) = (1, p - R p), where a parser undoes their pose (R, p) by no inverse of it."""
+def _placed(reference: Header, model: mj.MjModel, of: Callable[[Array, Array], tuple[Array, Array]]) -> Header:
+    """Describe free bodies on another placement than none, of their pose (R, p). A parser may undo it by (R', -p), which is not its inverse."""
     placed = copy.deepcopy(reference)
     names = {model.body(i).name or f"body {i}": i for i in range(1, model.nbody)}
     for body in placed["bodies"]:
         i = names.get(body["name"])
         if body["joint"]["type"] == "free" and i is not None:
-            p = model.body_pos[i].copy()
-            body["joint"]["placement"] = Place(translation=p - turned(*model.body_quat[i]) @ p).json()
+            body["joint"]["placement"] = Place(*of(turned(*model.body_quat[i]), model.body_pos[i].copy())).json()
     return placed
 
 

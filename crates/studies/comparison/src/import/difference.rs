@@ -154,6 +154,10 @@ pub enum Cause {
     Classes,
     /// Inertials are not read: geoms give the mass.
     InertialIgnored,
+    /// Only the first geom of a body has mass.
+    FirstGeoms,
+    /// Geoms that collide with nothing have no mass.
+    UnseenGeoms,
     /// Only the first `<compiler>` is read.
     FirstCompiler,
     /// The axis of an `axisangle` is not made a unit vector.
@@ -298,6 +302,8 @@ impl Cause {
             Self::Shell => "shell",
             Self::Classes => "classes",
             Self::InertialIgnored => "inertial_ignored",
+            Self::FirstGeoms => "first_geoms",
+            Self::UnseenGeoms => "unseen_geoms",
             Self::FirstCompiler => "first_compiler",
             Self::AxisLength => "axis_length",
             Self::NotARotation => "not_a_rotation",

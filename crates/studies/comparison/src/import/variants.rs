@@ -1,8 +1,8 @@
 //! Hypotheses about a whole file: what it would be if one thing of it were read otherwise, by the engine that is the reference of its format.
 //!
 //! A variant is named if the engine's robot is that of the variant in *every* body and field that the variant changes, to rounding.
-//! Variants compete: the one that accounts for most differences is named first, and of equals the one with fewer edits. The others are
-//! listed with the first number that refutes them.
+//! Variants compete: the one that accounts for most differences is named first, and of equals the one with fewer edits. One that accounts
+//! for what several with fewer edits do together is not named. The others are listed with the first number that refutes them.
 
 use super::account::TESTED;
 use super::comparison::{Comparison, SingleDifference};
@@ -27,6 +27,8 @@ fn cause(word: &str) -> Cause {
         "first_compiler" => Cause::FirstCompiler,
         "axis_length" => Cause::AxisLength,
         "default_inertia" => Cause::DefaultInertia,
+        "unseen_geoms" => Cause::UnseenGeoms,
+        "first_geoms" => Cause::FirstGeoms,
         "euler_sequence" => Cause::EulerSequence,
         "degrees" => Cause::Degrees,
         _ => Cause::Edited,
@@ -46,6 +48,16 @@ pub(super) fn explain(found: &mut Comparison, ours: &Description, theirs: &Descr
             Err(reason) => refuted.push(format!("{}: {reason}", variant.text)),
         }
     }
+    // Variants with fewer edits come first.
+    let composed = |k: usize| {
+        let (_, places) = &standing[k];
+        let parts = standing[..k].iter().filter(|(_, of)| of.len() < places.len() && of.iter().all(|place| places.contains(place)));
+        let covered: Vec<usize> = parts.flat_map(|(_, of)| of).copied().collect();
+        places.iter().all(|place| covered.contains(place))
+    };
+    let composed: Vec<bool> = (0..standing.len()).map(composed).collect();
+    let mut composed = composed.into_iter();
+    standing.retain(|_| composed.next() == Some(false));
     standing.sort_by_key(|(_, places)| std::cmp::Reverse(places.len()));
     let mut claimed = vec![false; found.findings.len()];
     for (variant, places) in standing {
