@@ -69,8 +69,8 @@ def loaded(path: Path, links: Sequence[Link], notes: list[Header]) -> list[Link]
     links : sequence of Link
         What the engine holds.
     notes : list of dict
-        Gets a note of each matrix that is no rotation, and of each mass or inertia that is no number (`not_a_mass`). If no joint is left, the
-        joints of the file are noted (`no_joints`).
+        Gets a note of each matrix that is no rotation, and of each mass or inertia that is no number (`not_a_mass`). If no joint is left,
+        the joints of the file are noted (`no_joints`).
 
     Returns
     -------

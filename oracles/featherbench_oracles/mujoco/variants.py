@@ -25,7 +25,7 @@ from featherbench_oracles.core.reading import Place, turned
 Describe = Callable[[mj.MjSpec, mj.MjModel], Header]
 Edit = Callable[[Element], None]
 MOST_BODIES = 200  # of a robot that has variants: each costs a compilation
-MOST_OF_THREE = 60  # of a robot that has variants of three edits
+MOST_OF_THREE = 20  # of a robot that has variants of three edits
 APART = ("contact", "tendon", "actuator", "equality", "sensor", "keyframe", "custom")  # names what an edit may remove, and is in no variant
 POSE = ("pos", "quat", "axisangle", "xyaxes", "zaxis", "euler")
 ONE = {"pos": "0 0 0", "mass": "1", "diaginertia": "1 1 1"}  # the inertial that DART gives a body, kg and kg m²
@@ -48,7 +48,7 @@ def variants(path: Path, describe: Describe, model: mj.MjModel, reference: Heade
     Returns
     -------
     list of dict
-        Of each variant `cause`, `text` and `model`, single edits first.
+        Of each variant `cause`, `text`, `edits` and `model`, single edits first.
     """
     if model.nbody > MOST_BODIES:
         return []
@@ -57,13 +57,13 @@ def variants(path: Path, describe: Describe, model: mj.MjModel, reference: Heade
         root.remove(section)
     found: list[Header] = []
 
-    def keep(cause: str, text: str, described: Header | None, alone: bool = True) -> bool:
+    def keep(cause: str, text: str, described: Header | None, edits: int = 1) -> bool:
         if described is None or _content(described) == _content(reference):
             return False
         twin = next((other for other in found if _content(other["model"]) == _content(described)), None)
         if twin is None:
-            found.append({"cause": cause, "text": text, "model": described})
-        elif alone:  # this file does not tell the two apart
+            found.append({"cause": cause, "text": text, "edits": edits, "model": described})
+        elif edits == 1:  # this file does not tell the two apart
             twin["text"] += f", or {text}"
         return twin is None
 
@@ -86,7 +86,7 @@ def variants(path: Path, describe: Describe, model: mj.MjModel, reference: Heade
     keep("axis_length", "the axis of an axisangle in an inertial is not made a unit vector", _long_axes(reference, root))
     for count in (2, 3) if model.nbody <= MOST_OF_THREE else (2,):
         for chosen in combinations(single, count):
-            keep(chosen[0][0], ", and ".join(text for _, text, _ in chosen), read([edit for _, _, edit in chosen]), alone=False)
+            keep(chosen[0][0], ", and ".join(text for _, text, _ in chosen), read([edit for _, _, edit in chosen]), count)
     return found
 
 
@@ -305,7 +305,7 @@ EDITS: tuple[tuple[str, str, Edit], ...] = (
 
 
 def _placed(reference: Header, model: mj.MjModel, of: Callable[[Array, Array], tuple[Array, Array]]) -> Header:
-    """Describe free bodies on another placement than none, of their pose (R, p). A parser may undo it by (R', -p), which is not its inverse."""
+    """Describe free bodies on another placement than none, made of their pose (R, p): a parser may undo it by what is not its inverse."""
     placed = copy.deepcopy(reference)
     names = {model.body(i).name or f"body {i}": i for i in range(1, model.nbody)}
     for body in placed["bodies"]:

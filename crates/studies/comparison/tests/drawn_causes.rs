@@ -94,7 +94,8 @@ fn edits_that_no_rule_makes_have_no_cause_and_the_others_their_own() {
 
 /// What a file would be to parsers that read one thing otherwise.
 fn variants(ours: &Description, random: &mut Random) -> Vec<ImportVariant> {
-    let variant = |cause: &str, description: Description| ImportVariant { cause: cause.into(), text: format!("by {cause}"), description };
+    let variant =
+        |cause: &str, description: Description| ImportVariant { cause: cause.into(), text: format!("by {cause}"), edits: 1, description };
     let gravity = Description { gravity: random.direction().map(|x| 9.0 * x), ..ours.clone() };
     let mut ones = ours.clone();
     for body in &mut ones.bodies {

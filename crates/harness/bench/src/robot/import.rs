@@ -26,6 +26,8 @@ pub struct ImportVariant {
     pub cause: String,
     /// What is read otherwise, as the end of a sentence.
     pub text: String,
+    /// The number of things that are read otherwise.
+    pub edits: u64,
     /// The robot, canonical. It has no body if nothing moves.
     pub description: Description,
 }
@@ -56,7 +58,7 @@ struct Written {
     keyframes: Vec<Vec<f64>>,
     /// Of each variant its cause, its text and the text of its description.
     #[serde(default)]
-    variants: Vec<(String, String, String)>,
+    variants: Vec<(String, String, u64, String)>,
 }
 
 impl Import {
@@ -68,7 +70,8 @@ impl Import {
         let text = |description: &Description| neutral::to_string(description).map_err(|error| error.to_string());
         let written = self.written.as_ref().map(text).transpose()?;
         let (description, notes, keyframes) = (text(&self.description)?, self.notes.clone(), self.keyframes.clone());
-        let variant = |variant: &ImportVariant| Ok((variant.cause.clone(), variant.text.clone(), text(&variant.description)?));
+        let variant =
+            |variant: &ImportVariant| Ok((variant.cause.clone(), variant.text.clone(), variant.edits, text(&variant.description)?));
         let variants = self.variants.iter().map(variant).collect::<Result<_, String>>()?;
         serde_json::to_string(&Written { notes, description, written, keyframes, variants }).map_err(|error| error.to_string())
     }
@@ -81,8 +84,9 @@ impl Import {
         let Written { notes, description, written, keyframes, variants } = serde_json::from_str(text).map_err(|error| error.to_string())?;
         let parse = |text: &str| neutral::parse(text, "an import").map_err(|error| error.to_string());
         let written = written.as_deref().map(parse).transpose()?;
-        let variant =
-            |(cause, text, description): (String, String, String)| Ok(ImportVariant { cause, text, description: parse(&description)? });
+        let variant = |(cause, text, edits, description): (String, String, u64, String)| {
+            Ok(ImportVariant { cause, text, edits, description: parse(&description)? })
+        };
         let variants = variants.into_iter().map(variant).collect::<Result<_, String>>()?;
         Ok(Self { description: parse(&description)?, notes, keyframes, written, variants })
     }

@@ -56,7 +56,8 @@ fn variant(given: &Value, parse: impl Fn(&Value) -> Result<Description, String>)
     let (cause, text) = (text("cause")?, text("text")?);
     let model = given.get("model").ok_or_else(|| format!("variant {cause} has no model"))?;
     let description = parse(model).and_then(|model| canonical(&model)).map_err(|error| format!("variant {cause}: {error}"))?;
-    Ok(ImportVariant { cause, text, description })
+    let edits = given.get("edits").and_then(Value::as_u64).unwrap_or(1);
+    Ok(ImportVariant { cause, text, edits, description })
 }
 
 /// Whether two descriptions have the same bodies on the same joints: states of one are states of the other.

@@ -45,13 +45,17 @@ pub(super) fn explain(found: &mut Comparison, ours: &Description, theirs: &Descr
         match covered(&predicted, found, reach) {
             Ok(places) if !places.is_empty() => standing.push((variant, places)),
             Ok(_) => {}
-            Err(reason) => refuted.push(format!("{}: {reason}", variant.text)),
+            // Those of several edits are many, and each edit is listed by itself.
+            Err(reason) if variant.edits == 1 => refuted.push(format!("{}: {reason}", variant.text)),
+            Err(_) => {}
         }
     }
-    // Variants with fewer edits come first.
     let composed = |k: usize| {
         let (_, places) = &standing[k];
-        let parts = standing[..k].iter().filter(|(_, of)| of.len() < places.len() && of.iter().all(|place| places.contains(place)));
+        let fewer = |other: &ImportVariant| other.edits < standing[k].0.edits;
+        let parts = standing[..k]
+            .iter()
+            .filter(|(other, of)| fewer(other) && of.len() < places.len() && of.iter().all(|place| places.contains(place)));
         let covered: Vec<usize> = parts.flat_map(|(_, of)| of).copied().collect();
         places.iter().all(|place| covered.contains(place))
     };
@@ -62,7 +66,7 @@ pub(super) fn explain(found: &mut Comparison, ours: &Description, theirs: &Descr
     let mut claimed = vec![false; found.findings.len()];
     for (variant, places) in standing {
         let open: Vec<usize> = places.into_iter().filter(|&k| !claimed[k]).collect();
-        if open.is_empty() {
+        if open.is_empty() && variant.edits == 1 {
             refuted.push(format!("{}: it accounts for nothing that another does not", variant.text));
         }
         for k in open {

@@ -1,0 +1,77 @@
+"""Hypotheses about files: a variant is the robot of the same file with what is said to be read otherwise written otherwise."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from featherbench_oracles.core.messages import Header
+
+from .readers import Readers
+
+DRAWN = 12
+SIZES = ("0.1 0.2", "0.2 0.1", "0.15 0.15")
+
+
+def drawn(seed: int) -> tuple[str, dict[str, str]]:
+    """Draw an arm, and the same arm as each variant says that it is read, by the text of the variant."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(2, 4))
+    poses = [" ".join(f"{x:.3f}" for x in rng.normal(size=3)) for _ in range(2 * count)]
+    hinge = f'pos="{poses[0]}"'
+
+    def text(classes: str = hinge, unseen: bool = True, second: bool = True) -> str:
+        lines = [f'<mujoco><default><default class="c"><joint {classes}/></default></default><worldbody>']
+        for k in range(count):
+            lines.append(f'<body name="b{k}" pos="{poses[k]}"><joint name="j{k}" class="c" axis="0 1 0"/>')
+            lines.append(f'<geom type="capsule" size="{SIZES[k]}"/>')
+            if second and (unseen or k):
+                hidden = 'contype="0" conaffinity="0"' if k == 0 else ""
+                lines.append(f'<geom type="sphere" size="0.1" pos="{poses[count + k]}" {hidden}/>')
+        return "".join(lines) + "</body>" * count + "</worldbody></mujoco>"
+
+    otherwise = {
+        "geoms that collide with nothing have no mass": text(unseen=False),
+        "only the first geom of a body has mass": text(second=False),
+        "the pos of joints in default classes is not read": text(classes=""),
+    }
+    return text(), otherwise
+
+
+def test_a_variant_is_the_file_written_otherwise(readers: Readers) -> None:
+    """The description of a variant is that of the file in which the same is left out."""
+    for seed in range(DRAWN):
+        text, otherwise = drawn(seed)
+        told = {variant["text"]: variant for variant in readers.read("mujoco", f"arm{seed}.xml", text).header["variants"]}
+        for k, (name, other) in enumerate(otherwise.items()):
+            due = readers.read("mujoco", f"arm{seed}-{k}.xml", other)
+            found = next(variant for said, variant in told.items() if variant["edits"] == 1 and name in said)
+            _same(found["model"]["bodies"], due.bodies)
+        pair = next(variant for variant in told.values() if variant["edits"] == 2)
+        assert ", and " in pair["text"]
+
+
+def test_inertias_of_an_engine_are_about_the_centres_of_mass(readers: Readers) -> None:
+    """Mass and centre of mass are kept, and the inertia about it is one kg m²."""
+    for seed in range(DRAWN):
+        text, _ = drawn(seed)
+        read = readers.read("mujoco", f"own{seed}.xml", text)
+        found = next(
+            variant for variant in read.header["variants"] if variant["text"].startswith("every body has the engine's own 1 kg·m²")
+        )
+        for body, own in zip(found["model"]["bodies"], read.bodies, strict=True):
+            assert body["mass"] == pytest.approx(own["mass"], rel=1e-15)
+            assert body["com"] == pytest.approx(own["com"], abs=1e-15)
+            assert body["inertia"] == pytest.approx([1, 0, 0, 1, 0, 1], abs=1e-14)
+
+
+def _same(found: list[Header], due: list[Header]) -> None:
+    assert [body["name"] for body in found] == [body["name"] for body in due]
+    for one, other in zip(found, due, strict=True):
+        for key in ("mass", "com", "inertia"):
+            # The compiler diagonalises and multiplies back.
+            assert np.allclose(one[key], other[key], rtol=0, atol=1e-12 * (1 + np.abs(other[key]).max())), (one, other)
+        place, due_place = (
+            np.concatenate([np.ravel(body["joint"]["placement"][key]) for key in ("rotation", "translation")]) for body in (one, other)
+        )
+        assert np.allclose(place, due_place, rtol=0, atol=1e-14)
