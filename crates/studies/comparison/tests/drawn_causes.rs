@@ -114,6 +114,30 @@ fn variants(ours: &Description, random: &mut Random) -> Vec<ImportVariant> {
     vec![variant("gravity_ignored", gravity), variant("default_inertia", ones), variant("inertia_groups", groups), variant("shell", shell)]
 }
 
+/// What two variants do together is named by each, and not by the variant of both.
+#[test]
+fn a_variant_of_two_edits_is_named_where_single_ones_do_not_suffice() {
+    for k in (0..400).step_by(one_of(16)) {
+        let mut random = Random::new(46, k as u64);
+        let ours = robot(&mut random);
+        let mut variants = variants(&ours, &mut random);
+        let both = Description { gravity: variants[0].description.gravity, ..variants[1].description.clone() };
+        variants.push(ImportVariant { cause: "shell".into(), text: "both".into(), edits: 2, description: both.clone() });
+        let causes = |variants: &[ImportVariant]| -> Vec<(Field, Cause)> {
+            let found = Comparison::of(&ours, &both, &[], &[]).explained_by(&ours, &both, variants, &[]);
+            let felt = found.differences().filter(|found| found.field.weight() == Weight::Dynamics);
+            felt.map(|found| (found.field, found.cause)).collect()
+        };
+        for (field, cause) in causes(&variants) {
+            let due = if field == Field::Gravity { Cause::GravityIgnored } else { Cause::DefaultInertia };
+            assert_eq!(cause, due, "{k}: {field:?}");
+        }
+        // Without one of the two, the variant of both is the one that gives the numbers.
+        variants.remove(1);
+        assert!(causes(&variants).iter().all(|(_, cause)| *cause == Cause::Shell), "{k}");
+    }
+}
+
 #[test]
 fn a_variant_is_named_if_it_gives_all_numbers_and_refuted_by_one() {
     let causes = [Cause::GravityIgnored, Cause::DefaultInertia, Cause::InertiaGroups, Cause::Shell];
