@@ -1,5 +1,5 @@
-//! Damaged runs: each command that reads a run refuses one of whose files a byte was flipped, a part is missing or all, and names that file; or it
-//! does not read the file, and says what it says of the whole run.
+//! Damaged runs: a byte of a file is flipped, a part of it is missing, or all. Each command that reads the file refuses the run and names the file.
+//! One that does not read it says what it says of the whole run.
 //!
 //! The commands are those of `featherbench --help`, the files those that are there. Damage is drawn.
 

@@ -324,6 +324,9 @@ fn a_deviation_must_be_seen_where_its_robots_are() {
     // Where no robot shows it at every seed, one seed need not.
     let rare = with(&row(), range(2e-15, 3e-14, 19, 20));
     assert_eq!(red(&rare, &[rare.judge(row(), 1e-15, 1.0)]), [""; 0]);
+    // Where only one seed in ten million is without it, one that is shows that it is gone.
+    let usual = with(&row(), range(2e-15, 3e-14, 9_999_999, 10_000_000));
+    assert_eq!(red(&usual, &[usual.judge(row(), 1e-15, 1.0)]), [gone]);
     // Rows of another version or method are expected as well, and show nothing.
     for other in [Row { engine_version: "3".into(), ..row() }, Row { method: "aba".into(), ..row() }] {
         assert_eq!(red(&gates, &[gates.judge(other, 1e-15, 1.0)]), [gone]);

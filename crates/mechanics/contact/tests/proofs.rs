@@ -40,8 +40,8 @@ fn line(random: &mut Random, masses: &[f64]) -> (DMatrix<f64>, DMatrix<f64>) {
     (DMatrix::from_diagonal(&DVector::from_row_slice(masses)), jacobian)
 }
 
-/// A mechanism without restitution, whose contacts do not have a given direction of sliding, always has a solution: at rest all of its
-/// contacts obey Signorini's law, so its velocities have a point of least energy, and with friction Lemke's theorem has it.
+/// A mechanism without restitution, whose contacts do not have a given direction of sliding, always has a solution. At rest all of its
+/// contacts obey Signorini's law, so its velocities have a point of least energy. With friction Lemke's theorem has it.
 #[test]
 fn a_mechanism_always_has_a_solution() {
     let mut random = Random::named(1, "mechanisms over 24 decades");

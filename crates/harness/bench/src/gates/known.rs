@@ -7,6 +7,9 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+/// The probability with which a run may be without a deviation that it is to show, as of a limit on chance (`ci/gates.toml`).
+const HIDDEN: f64 = 1e-6;
+
 /// The key, in the parameters of a row, of the id of the deviation that explains the row.
 const PARAMETER: &str = "deviation";
 
@@ -136,7 +139,7 @@ impl Known {
         self.robots.get(&row.robot)
     }
 
-    /// One condition per known deviation of the suite's engines and robots: it still occurs, unless some seeds alone show it there. If its size is measured, there is one more: it
+    /// One condition per known deviation of the suite's engines and robots: it still occurs, unless chance may hide it (`HIDDEN`). If its size is measured, there is one more: it
     /// has the known size on every robot. And there is one condition per lack.
     pub(crate) fn still_seen(&self, suite: &Suite, records: &[Row]) -> Vec<Expectation> {
         let asked = |engine: &String| suite.engines().contains(engine);
@@ -172,13 +175,17 @@ impl Known {
         records.iter().filter(|row| known.class.holds(&row.robot, self.properties(row))).map(|row| row.robot.as_str()).collect()
     }
 
-    /// Whether a deviation has sizes on robots of a run, and no robot showed it at every seed.
+    /// Whether a run may be without a deviation by chance: no robot of the run shows it, each by the share of seeds that its sizes had.
     fn is_rare(&self, known: &Deviation, records: &[Row]) -> bool {
         let run: BTreeSet<&str> = records.iter().map(|row| row.robot.as_str()).collect();
-        let sizes =
-            self.ranges.iter().filter(|(key, range)| range.deviation == known.id && known.has(key) && run.contains(key.robot.as_str()));
-        let constant: Vec<bool> = sizes.map(|(_, range)| range.outside == range.seeds).collect();
-        !constant.is_empty() && !constant.contains(&true)
+        let mut shown: BTreeMap<&str, f64> = BTreeMap::new();
+        for (key, range) in self.ranges.iter().filter(|(key, range)| range.deviation == known.id && known.has(key)) {
+            if run.contains(key.robot.as_str()) {
+                let share = range.outside as f64 / range.seeds as f64;
+                shown.entry(&key.robot).and_modify(|most| *most = worst(*most, share)).or_insert(share);
+            }
+        }
+        !shown.is_empty() && shown.values().map(|share| 1.0 - share).product::<f64>() > HIDDEN
     }
 
     /// Whether a deviation is the cause of a row's verdict.

@@ -9,8 +9,8 @@
 //! pull decides only what the torques do not tell. Y enters by its triangular factor: so a step costs O(p³), whatever the length of the
 //! log.
 //!
-//! With noise the best θ is on the edge of what can exist, and there a residual stays that Gauss and Newton's matrix knows nothing of: their steps
-//! along the edge are too long, and thousands of short ones are left. So a step has the second order of P = U Uᵀ, and of the logarithms, too.
+//! With noise the best θ is on the edge of what can exist, and a residual stays there. Gauss and Newton's matrix leaves it out: their steps along
+//! the edge are too long, and thousands of short ones are left. So a step has the second order of P = U Uᵀ, and of the logarithms, too.
 
 use super::sizes;
 use crate::{IdentificationError, Information, Kind, LinearModel, LogCholesky, PseudoInertia, Samples, Stacking};

@@ -2,8 +2,8 @@
 //! solver answers them.
 //!
 //! The robot meets the ground with all feet at once, moves sideways too, and springs in its joints hold it up. Nonsmooth
-//! Gauss–Seidel steps it in time. On one pad with more rows than it has motions the sweeps may gain ever less, and Newton's matrix is singular:
-//! then Newton's method steps it, or ADMM, whose matrix has an inverse whatever the rank, or more sweeps.
+//! Gauss–Seidel steps it in time. On one pad with more rows than it has motions the sweeps may gain ever less. Then Newton's method steps it. Its
+//! matrix may be singular there; then ADMM does, whose matrix has an inverse whatever the rank, or more sweeps.
 
 use super::{Case, Number, count, error, failed, largest, told};
 use featherbench_bench::{ContactSteps, NoAnswer};
