@@ -8,6 +8,9 @@
 //! replicate are not independent, so nothing may be divided by N − 1: with the mean of all replicates ȳ and those of each, ȳ_r,
 //! `V = Σ (y − ȳ)²/N + Σ_r (ȳ_r − ȳ)²/(R (R − 1))` has no bias. Its last term is the squared error of ȳ.
 //!
+//! Student's interval of R replicates whose estimates have the skewness γ holds the truth with a probability that is 0.25 γ²/R below its own (P. Hall,
+//! 1983, the second order of Edgeworth's expansion at 95 %). γ of a variance is up to 2 here: 6 % with 16 replicates, 1.5 % with 64.
+//!
 //! **Control variate.** ℓ = y(μ) + J (x − μ) has a known mean, y(μ). With β = cov(y, ℓ)/var(ℓ), the mean of y − β (ℓ − y(μ)) is that of y, and
 //! its variance is (1 − ρ²) var(y). β is fitted to the same samples, which biases the mean by O(1/N).
 
@@ -45,7 +48,7 @@ pub struct Sampling {
     pub samples: u64,
     /// The seed.
     pub seed: u64,
-    /// Independent replicates; two at least.
+    /// Independent replicates; two at least. Few make the interval of a skewed estimate too short, many the points of each less even.
     pub replicates: u64,
     /// Threads; `None` takes all that rayon has.
     pub threads: Option<usize>,
@@ -53,7 +56,7 @@ pub struct Sampling {
 
 impl Default for Sampling {
     fn default() -> Self {
-        Self { points: Points::Random, samples: 1 << 16, seed: 1, replicates: 16, threads: None }
+        Self { points: Points::Random, samples: 1 << 16, seed: 1, replicates: 64, threads: None }
     }
 }
 

@@ -151,13 +151,14 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
     tally.judge();
 }
 
-/// The same, over 400 seeds of one problem: nothing but the points is drawn. By day of one problem, at night of eight.
+/// The same, over the seeds of one problem: nothing but the points is drawn. The last problem is the most skewed of the eight: with 16 replicates
+/// 90 % of its intervals of the variance hold it. By day it alone, and a quarter of the seeds.
 #[test]
 fn intervals_hold_the_truth_of_one_problem() {
-    for problem in 0..8 / one_of(8) {
+    for problem in (0..8).rev().take(8 / one_of(8)) {
         let mut tally = Tally::default();
-        for seed in 0..400 {
-            let mut drawn = Random::named(problem as u64, "problem");
+        for seed in 0..2000 / one_of(4) as u64 {
+            let mut drawn = Random::named(problem, "problem");
             let mut points = Random::named(seed, "points");
             let of = if problem % 2 == 0 { arm } else { product };
             of(&mut tally, &mut drawn, &mut points);
