@@ -73,8 +73,11 @@ fn ask<R: Response>(tally: &mut Tally, random: &mut Random, space: &Space, respo
             }
         }
         let found = &sensitivity(space, response, &settings).unwrap()[0];
-        add("index, alone", found.first[variable], known.indices[variable][0]);
-        add("index, in all", found.total[variable], known.indices[variable][1]);
+        // Of a variable without effect both indices are what rounding left: no interval is due.
+        if known.indices[variable][1] > 1e-12 {
+            add("index, alone", found.first[variable], known.indices[variable][0]);
+            add("index, in all", found.total[variable], known.indices[variable][1]);
+        }
     }
 }
 

@@ -181,16 +181,17 @@ fn a_body_less_is_compared_on_what_is_left() {
 /// A robot that stands elsewhere has the same M and τ, and is not the same robot.
 #[test]
 fn a_displaced_robot_is_never_called_rounding() {
-    let robot = filed("humanoid");
-    let root = robot.description.bodies.iter().position(|body| body.parent.is_none()).unwrap();
+    let robots = ["humanoid", "quadruped"].map(filed);
     let mut random = Random::new(44, 3);
-    for decade in 0..=12 {
+    for decade in (0..16 / one_of(16)).flat_map(|_| 0..=12) {
+        let robot = &robots[random.below(robots.len())];
+        let root = robot.description.bodies.iter().position(|body| body.parent.is_none()).unwrap();
         let mut moved = robot.description.clone();
         let by = 10.0_f64.powi(-decade) * random.uniform(1.0, 3.0);
         let direction: [f64; 3] = random.direction();
         let translation = &mut moved.bodies[root].joint.placement.translation;
         *translation = std::array::from_fn(|k| translation[k] + by * direction[k]);
-        let records = records(&robot, Parser::new(moved.clone(), &moved, &robot));
+        let records = records(robot, Parser::new(moved.clone(), &moved, robot));
         let difference = row(&records, "difference", "placement");
         assert_eq!(params(difference)["class"], "pose", "{by} m: {difference:?}");
         assert_eq!(params(row(&records, "differences", "import"))["pose"], 1);
