@@ -19,6 +19,8 @@ from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.attributes import NO_PART, READ, not_compared
 from featherbench_oracles.mujoco.reading import read
 
+# the schema as the test of our own reader has it
+SCHEMA = Path(__file__).resolve().parents[2] / "crates/mechanics/formats/tests/mjcf_schema.txt"
 # every kind of element that can have a part in the dynamics of a tree, without contacts
 ROBOT = """<mujoco model="all"><compiler angle="degree"/><option gravity="0 0 -9"/>
 <worldbody><body name="base" pos=".1 .2 .3"><joint name="lift" type="slide" axis="0 0 1" range="-1 2"/>
@@ -52,14 +54,23 @@ VALUES = (
 )
 
 
-def schema() -> dict[str, set[str]]:
-    """List the attributes of each element that MuJoCo's schema has."""
+def elements() -> dict[str, set[str]]:
+    """List the attributes of each element that MuJoCo's schema has, by the element's path below the root."""
     found: dict[str, set[str]] = {}
-    element = ""
+    path: list[str] = []
     for line in mj.mj_printSchema(False, False).splitlines():
-        start = re.match(r"\s*(\S+) \([!*?R]\)\s*(.*)", line)
-        element, words = (start[1].replace("(world)", ""), start[2]) if start else (element, line)
-        found.setdefault(element, set()).update(words.split())
+        start = re.match(r"( *)(\S+) \([!*?R]\)\s*(.*)", line)
+        if start:
+            path = [*path[: len(start[1]) // 3], start[2].replace("(world)", "")]
+        found.setdefault("/".join(path[1:]) or "mujoco", set()).update((start[3] if start else line).split())
+    return found
+
+
+def schema() -> dict[str, set[str]]:
+    """List the attributes of each element, wherever the schema has it."""
+    found: dict[str, set[str]] = {}
+    for path, attributes in elements().items():
+        found.setdefault(path.rsplit("/", maxsplit=1)[-1], set()).update(attributes)
     return found
 
 
@@ -141,3 +152,9 @@ def test_each_attribute_of_the_schema_is_listed_or_told(tmp_path: Path) -> None:
         listed = attribute in READ["joint"] | NO_PART
         solver = "how a simulation" in told
         assert listed or solver or f"joint {attribute} (" in told, (attribute, told)
+
+
+def test_our_own_reader_is_tested_by_the_same_schema() -> None:
+    """The list by which the test of our reader goes is that of the installed MuJoCo."""
+    due = "".join(f"{path}: {' '.join(sorted(attributes))}\n" for path, attributes in elements().items())
+    assert SCHEMA.read_text() == due, f"write this into {SCHEMA}, and then list what is new in our reader:\n{due}"

@@ -48,6 +48,35 @@ def test_the_table_says_what_is_newer(script: dict[str, Any]) -> None:
     assert "| b | 2 | 3 (newer) |" in told
 
 
+def test_each_package_has_its_day(script: dict[str, Any], engines: str) -> None:
+    """The day is that of the pinned version; native oracles are built of the packages of others."""
+    described = script["packages"](engines)
+    assert described["mujoco"]["released"] == "2026-11-06"
+    assert described["faer"]["kind"] == "cargo_library"
+    assert len(described) == 12
+    assert "| mujoco | 4.0.0 | 2026-11-06 |" in script["days"](described)
+
+
+def test_a_day_of_a_wheel_is_that_from_which_pip_finds_it(script: dict[str, Any], tmp_path: Path) -> None:
+    """The index got the wheel within 2 March: the day before and the day after are wrong."""
+    pip: list[str | Path] = [program(tmp_path, "pip", 'case "$*" in *prior-to\\ 2026-03-0[3-9]*a==1) exit 0; esac; exit 1')]
+    found = [script["is_day_of_wheel"]("a==1", day, pip) for day in ("2026-03-01", "2026-03-02", "2026-03-03")]
+    assert found == [False, True, False]
+
+
+def test_a_day_of_a_crate_is_what_cargo_keeps(script: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a version that the index does not have no day is known."""
+    kept = tmp_path / "registry/index/some/.cache/fa/er"
+    kept.mkdir(parents=True)
+    lines = [b"\3\2", b"etag", b"1.0.0", b'{"vers":"1.0.0","pubtime":"2026-03-02T23:59:59Z"}', b"1.1.0", b'{"vers":"1.1.0"}']
+    (kept / "faer").write_bytes(b"\0".join(lines))
+    program(tmp_path, "cargo", "exit 1")
+    monkeypatch.setenv("CARGO_HOME", str(tmp_path))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    days = [script["day_of_crate"]("faer", version) for version in ("1.0.0", "1.1.0", "2.0.0")]
+    assert days == ["2026-03-02", None, None]
+
+
 def test_a_warning_is_one_line(script: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
     """Line ends and per cent signs are escaped as GitHub asks."""
     script["warn"]("50 %\nmore")

@@ -16,6 +16,7 @@ mod history_diff;
 mod paper;
 mod parsers;
 mod planted;
+mod pythons;
 mod residuals;
 mod resume;
 mod schema;

@@ -243,7 +243,7 @@ fn a_missing_python_is_exit_code_three() {
     let empty = sandbox.path("empty");
     std::fs::create_dir(&empty).unwrap();
     let mut command = sandbox.command(&["oracles", "install"]);
-    let ended = support::Ended::new(command.env("PATH", &empty).output().unwrap());
+    let ended = support::Ended::new(command.env("PATH", &empty).env("PYENV_ROOT", &empty).output().unwrap());
     ended.expect(3, &["python3", "Python 3.11", "recorded answers"]);
     sandbox.run(&["oracles", "status"]).expect(3, &["not installed", "oracles install"]);
 }

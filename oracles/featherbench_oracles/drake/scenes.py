@@ -26,11 +26,11 @@ from featherbench_oracles.abilities.scenes import Derivative, DerivativeVariant,
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.protocol import Unsupported
 
+# Drake 1.58 has no TAMSI any more.
 APPROXIMATIONS = {
-    "tamsi": DiscreteContactApproximation.kTamsi,
-    "sap": DiscreteContactApproximation.kSap,
-    "similar": DiscreteContactApproximation.kSimilar,
-    "lagged": DiscreteContactApproximation.kLagged,
+    name: getattr(DiscreteContactApproximation, value)
+    for name, value in {"tamsi": "kTamsi", "sap": "kSap", "similar": "kSimilar", "lagged": "kLagged"}.items()
+    if hasattr(DiscreteContactApproximation, value)
 }
 # The accuracy that is asked of CENIC.
 ACCURACY = 1e-6
@@ -165,5 +165,6 @@ DERIVATIVES = {
         partial(_autodiff, name), {"contact": f"point contact, {name}", "differences": "none: AutoDiffXd"}
     )
     for name in ("tamsi", "lagged")
+    if name in APPROXIMATIONS
 }
 VARIANTS = {name: _variant(name) for name in (*APPROXIMATIONS, "cenic")}

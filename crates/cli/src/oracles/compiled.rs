@@ -6,7 +6,7 @@ use crate::fail::Fail;
 use crate::message::tell;
 use crate::progress::spinner;
 use crate::root::Root;
-use featherbench_bench::{DescribedEngine, Engine, hash};
+use featherbench_bench::{DescribedEngine, Engine, Engines, hash};
 use featherbench_engines::{Limits, Oracle, native};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::ffi::OsString;
@@ -92,21 +92,21 @@ impl<'a> Compiled<'a> {
     }
 
     /// Its status, or why it does not answer.
-    pub fn told(&self) -> String {
-        self.status().unwrap_or_else(|reason| reason)
+    pub fn told(&self, engines: &Engines) -> String {
+        self.status(engines).unwrap_or_else(|reason| reason)
     }
 
     /// Its version and where it is, if it answers.
     ///
     /// # Errors
     /// A sentence that says why it does not.
-    fn status(&self) -> Result<String, String> {
+    fn status(&self, engines: &Engines) -> Result<String, String> {
         let product = self
             .built()?
             .ok_or_else(|| format!("is not built: run `featherbench oracles install {}`, or a suite that asks for it", self.name))?;
         let oracle = self.command(product.clone()).and_then(|command| Oracle::start(command, Limits::default()));
         let oracle = oracle.map_err(|reason| format!("does not answer: {reason}"))?;
-        Ok(format!("{:<8} {}", oracle.identity().version, product.display()))
+        Ok(super::answering(engines, self.name, &oracle.identity().version, product.display()))
     }
 
     /// Has cargo build it. The hash is written last: what a build that breaks off leaves behind is not taken.

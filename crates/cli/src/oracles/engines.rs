@@ -139,6 +139,9 @@ pub fn open(root: &Root, asked: &Asked) -> Result<Opened, Fail> {
             opened.add(answers, &engine.name, EngineSource::Recorded);
         }
     }
+    for info in &mut opened.infos {
+        info.released = described.released(&info.name, &info.version).unwrap_or_default().to_owned();
+    }
     for external in asked.externals {
         opened.add(Ok(Box::new(external.start(root, limits)?)), &external.name, EngineSource::Live);
     }
@@ -167,6 +170,7 @@ impl Opened {
                 EngineInfo {
                     name: identity.name,
                     version: identity.version,
+                    released: String::new(),
                     source,
                     build: identity.build,
                     status: "ok".into(),
@@ -176,6 +180,7 @@ impl Opened {
             Err(reason) => EngineInfo {
                 name: name.into(),
                 version: String::new(),
+                released: String::new(),
                 source,
                 build: Default::default(),
                 status: "missing".into(),

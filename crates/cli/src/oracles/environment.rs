@@ -1,6 +1,8 @@
 //! Python environments: the one that most engines share, and those of engines that are installed alone.
 
 use crate::fail::Fail;
+use crate::message::tell;
+use crate::oracles::interpreters::{self, Interpreter};
 use crate::oracles::package;
 use crate::progress::spinner;
 use crate::root::Root;
@@ -11,7 +13,7 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// A Python environment while packages are installed into it.
+/// A Python environment with what was installed into it.
 pub struct Environment<'a> {
     bar: &'a ProgressBar,
     /// What is said where a step fails.
@@ -23,31 +25,62 @@ pub struct Environment<'a> {
 }
 
 impl<'a> Environment<'a> {
-    /// Makes an environment in a folder, unless it is there.
-    pub fn make(bar: &'a ProgressBar, folder: &Path, advice: &'a str) -> Result<Self, Fail> {
+    /// Makes an environment in a folder and installs packages into it: what the installer is told of them.
+    ///
+    /// Its Python is the newest of the [`interpreters`] for which all packages have wheels. Each is tried, the newest first, until the
+    /// installation succeeds. An environment that is there is kept, with its Python, where the file `installed` beside its folder says
+    /// that an installation succeeded once. To have a newer Python, remove the environment.
+    pub fn install(bar: &'a ProgressBar, folder: &Path, advice: &'a str, packages: &[OsString]) -> Result<Self, Fail> {
         let parent = folder.parent().unwrap_or(folder);
         std::fs::create_dir_all(parent).map_err(|error| Fail::input(format!("{}: {error}", parent.display())))?;
         let uv = Command::new("uv").arg("--version").output().is_ok_and(|output| output.status.success());
         let environment = Self { bar, advice, uv, python: folder.join("bin/python") };
-        if !environment.python.exists() {
-            let folder = folder.as_os_str().to_owned();
-            if uv {
-                environment.step("uv", &["venv".into(), "--python".into(), "3.11".into(), folder])?;
-            } else {
-                environment.step("python3", &["-m".into(), "venv".into(), folder])?;
-            }
+        if parent.join("installed").exists() && environment.python.exists() {
+            environment.add(packages)?;
+            return Ok(environment);
         }
-        Ok(environment)
+        let mut failures = Vec::new();
+        for interpreter in interpreters::found(uv) {
+            let made = environment.remake(folder, &interpreter).and_then(|()| environment.add(packages));
+            let Err(failure) = made else {
+                failures.iter().for_each(|failure| tell!("passed over: {failure}"));
+                return Ok(environment);
+            };
+            failures.push(format!("Python {}: {failure}", interpreter.told()));
+        }
+        if failures.is_empty() {
+            failures.push("no python3 of version 3.11 or later, with venv, is on the path or among pyenv's".into());
+        }
+        Err(environment.missing(failures.join("; ")))
     }
 
-    /// Installs packages: what the installer is told of them.
-    pub fn install(&self, packages: &[OsString]) -> Result<(), Fail> {
+    /// Makes the environment of an interpreter. One that is of the same version is kept: an installation that broke off goes on.
+    fn remake(&self, folder: &Path, interpreter: &Interpreter) -> Result<(), Fail> {
+        if Interpreter::of(self.python.clone().into()).is_some_and(|there| there.version == interpreter.version) {
+            return Ok(());
+        }
+        if folder.exists() {
+            std::fs::remove_dir_all(folder).map_err(|error| Fail::input(format!("{}: {error}", folder.display())))?;
+        }
+        if self.uv {
+            return self.step("uv", &["venv".into(), "--python".into(), interpreter.name.clone(), folder.into()]);
+        }
+        self.step(&interpreter.name.to_string_lossy(), &["-m".into(), "venv".into(), folder.into()])
+    }
+
+    /// Installs packages by their wheels: what is compiled here would be other code on each machine.
+    fn add(&self, packages: &[OsString]) -> Result<(), Fail> {
+        let wheels = ["--only-binary", ":all:"].map(OsString::from);
         if self.uv {
             let install = ["pip".into(), "install".into(), "--python".into(), self.python.as_os_str().to_owned()];
-            return self.step("uv", &[&install, packages].concat());
+            return self.step("uv", &[&install, &wheels[..], packages].concat());
         }
         let install = ["-m", "pip", "install", "--progress-bar", "off"].map(OsString::from);
-        self.step(&self.python.to_string_lossy(), &[&install, packages].concat())
+        self.step(&self.python.to_string_lossy(), &[&install, &wheels[..], packages].concat())
+    }
+
+    fn missing(&self, message: String) -> Fail {
+        Fail::Missing { message, advice: self.advice.into() }
     }
 
     /// Unpacks packages into a folder of their own.
@@ -56,12 +89,11 @@ impl<'a> Environment<'a> {
             // Emptied first: pip does not replace what stands there.
             let _ = std::fs::remove_dir_all(folder);
         }
-        self.install(&[&["--target".into(), folder.as_os_str().to_owned()], packages].concat())
+        self.add(&[&["--target".into(), folder.as_os_str().to_owned()], packages].concat())
     }
 
     /// Runs one command of the installation, showing its last line.
     fn step(&self, program: &str, arguments: &[OsString]) -> Result<(), Fail> {
-        let missing = |message: String| Fail::Missing { message, advice: self.advice.into() };
         let shown: Vec<_> = arguments.iter().map(|argument| argument.to_string_lossy()).collect();
         self.bar.set_message(format!("{program} {}", shown.join(" ")));
         let mut child = Command::new(program)
@@ -70,7 +102,7 @@ impl<'a> Environment<'a> {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
-            .map_err(|error| missing(format!("{program} cannot be started: {error}")))?;
+            .map_err(|error| self.missing(format!("{program} cannot be started: {error}")))?;
         let errors = child.stderr.take();
         let collector = std::thread::spawn(move || -> Vec<String> {
             errors.map(|errors| BufReader::new(errors).lines().map_while(Result::ok).collect()).unwrap_or_default()
@@ -80,13 +112,13 @@ impl<'a> Environment<'a> {
                 self.bar.set_message(line);
             }
         }
-        let status = child.wait().map_err(|error| missing(format!("{program}: {error}")))?;
+        let status = child.wait().map_err(|error| self.missing(format!("{program}: {error}")))?;
         let errors = collector.join().unwrap_or_default();
         if status.success() {
             return Ok(());
         }
         let last = errors.iter().rev().find(|line| line.to_lowercase().contains("error")).or(errors.last()).cloned().unwrap_or_default();
-        Err(missing(format!("`{program} {}` failed ({status}): {last}", shown.join(" "))))
+        Err(self.missing(format!("`{program} {}` failed ({status}): {last}", shown.join(" "))))
     }
 }
 
@@ -146,10 +178,9 @@ impl<'a> Alone<'a> {
         let advice = format!("{} needs {}; suites that do not ask for it need none of it", engine.name, engine.needs.join(" and, "));
         let stamp = self.stamp()?;
         let bar = spinner(&format!("installing {} …", engine.title));
-        let environment = Environment::make(&bar, &self.folder().join("venv"), &advice)?;
         // All packages are pinned: an installer that chose others would make other code.
         let packages: [OsString; 4] = ["--no-deps".into(), self.pin.clone().into(), "-r".into(), self.requirements().into_os_string()];
-        environment.install(&packages)?;
+        let environment = Environment::install(&bar, &self.folder().join("venv"), &advice, &packages)?;
         bar.finish_and_clear();
         ::featherbench_results::atomic_write(&self.folder().join("installed"), stamp.as_bytes())?;
         Ok(environment.python)

@@ -5,6 +5,7 @@ pub mod compiled;
 pub mod engines;
 pub mod environment;
 pub mod external;
+pub mod interpreters;
 pub mod native;
 pub mod offers;
 pub mod package;
@@ -18,7 +19,7 @@ use crate::oracles::environment::{Alone, Environment, pins};
 use crate::progress::spinner;
 use crate::root::Root;
 use featherbench_bench::alone::{Measured, Question};
-use featherbench_bench::{DescribedEngine, Engine, Engines, NoAnswer, OWN, Robot, Start};
+use featherbench_bench::{DescribedEngine, Engine, Engines, Identity, NoAnswer, OWN, Robot, Start};
 use featherbench_engines::{Limits, Oracle, alone};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -33,7 +34,7 @@ const ROBOTS: &str = "packages.txt";
 const MISSING: &str = "the reference engines are not installed: run `featherbench oracles install`";
 
 /// What is said where the environment cannot be made.
-const MISSING_PYTHON: &str = "the engines need Python 3.11 with venv (Debian: python3 python3-venv) and a reachable package index; \
+const MISSING_PYTHON: &str = "the engines need Python 3.11 or later with venv (Debian: python3 python3-venv) and a reachable package index; \
                               without them, `featherbench run` compares with the recorded answers";
 
 /// The engines that `oracles/engines.toml` describes.
@@ -88,8 +89,7 @@ pub fn install(root: &Root) -> Result<PathBuf, Fail> {
     let pins = described(root)?.pins().into_iter().map(OsString::from);
     let engines: Vec<OsString> = pins.chain(["-r".into(), requirements.into_os_string()]).collect();
     let bar = spinner("installing the reference engines (about 1.6 GB) …");
-    let environment = Environment::make(&bar, &folder.join("venv"), MISSING_PYTHON)?;
-    environment.install(&engines)?;
+    let environment = Environment::install(&bar, &folder.join("venv"), MISSING_PYTHON, &engines)?;
     let into = root.packages();
     environment.install_into(&into, &["--no-deps".into(), "-r".into(), packages.into_os_string()])?;
     let python = environment.python;
@@ -199,15 +199,27 @@ impl Built {
     }
 }
 
-/// Prints what answers.
+/// What is said of an engine that answers: its version, the day of that version's release, and something more.
+fn answering(engines: &Engines, name: &str, version: &str, more: impl std::fmt::Display) -> String {
+    format!("{version:<8} {:<11} {more}", engines.released(name, version).unwrap_or("unknown"))
+}
+
+/// The same of an oracle in Python: the version of its interpreter.
+fn of_python(engines: &Engines, engine: &DescribedEngine, oracle: &Oracle) -> String {
+    let Identity { version, build, .. } = oracle.identity();
+    answering(engines, &engine.name, version, format_args!("Python {}", build.get("python").map_or("unknown", String::as_str)))
+}
+
+/// Prints what answers: engine, version, date and Python.
 pub fn status(root: &Root) -> Result<(), Fail> {
     let engines = described(root)?;
     let installed = python(root).is_some();
     let mut broken = Vec::new();
+    say!("{:<16} {:<8} {:<11} Python, or what is built", "engine", "version", "released");
     for engine in engines.iter() {
         let told = match &engine.start {
             Start::Python { .. } => match start(root, engine, Limits::default()) {
-                Ok(oracle) => oracle.identity().version.clone(),
+                Ok(oracle) => of_python(&engines, engine, &oracle),
                 Err(_) if !installed => "is not installed: run `featherbench oracles install`".into(),
                 Err(fail) => {
                     broken.push(engine.name.as_str());
@@ -215,13 +227,13 @@ pub fn status(root: &Root) -> Result<(), Fail> {
                 }
             },
             Start::PythonAlone { .. } => match start(root, engine, Limits::default()) {
-                Ok(oracle) => oracle.identity().version.clone(),
+                Ok(oracle) => of_python(&engines, engine, &oracle),
                 Err(Fail::Missing { message, .. }) => message,
                 Err(fail) => fail.to_string(),
             },
-            Start::Cargo { folder, program } => Compiled::program(root, engine, folder, program).told(),
-            Start::CargoLibrary { folder, library } => Compiled::library(root, engine, folder, library).told(),
-            Start::Native(library) => native::status(root, engine, library).unwrap_or_else(|reason| reason),
+            Start::Cargo { folder, program } => Compiled::program(root, engine, folder, program).told(&engines),
+            Start::CargoLibrary { folder, library } => Compiled::library(root, engine, folder, library).told(&engines),
+            Start::Native(library) => native::status(root, &engines, engine, library).unwrap_or_else(|reason| reason),
         };
         say!("{:<16} {told}", engine.name);
     }

@@ -83,11 +83,12 @@ pub fn install(root: &Root, engines: &Engines, named: &[&DescribedEngine]) -> Re
 ///
 /// # Errors
 /// A sentence that says why it does not.
-pub fn status(root: &Root, engine: &DescribedEngine, library: &Library) -> Result<String, String> {
+pub fn status(root: &Root, engines: &Engines, engine: &DescribedEngine, library: &Library) -> Result<String, String> {
     let oracle = start(root, engine, library, Limits::default())?;
     let Identity { version, build, .. } = oracle.identity();
     let compiler = build.get("compiler").map_or("", String::as_str);
-    Ok(format!("{version:<8} {compiler}  {}", built(root, engine, library)?.display()))
+    let library = built(root, engine, library)?;
+    Ok(super::answering(engines, &engine.name, version, format_args!("{compiler}  {}", library.display())))
 }
 
 impl<'a> Recipe<'a> {

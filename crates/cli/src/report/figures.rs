@@ -129,6 +129,7 @@ mod tests {
         let engine = |name: &str, version: &str, status: &str| EngineInfo {
             name: name.into(),
             version: version.into(),
+            released: String::new(),
             source: EngineSource::Recorded,
             build: std::collections::BTreeMap::new(),
             status: status.into(),

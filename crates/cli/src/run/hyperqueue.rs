@@ -18,8 +18,7 @@ use std::process::{Child, Command, Stdio};
 const NAME: &str = "hyperqueue";
 const REQUIREMENTS: &str = "requirements.txt";
 const DRIVER: &str = "drive.py";
-const ADVICE: &str =
-    "sweeps need Python 3.11 with venv on Linux x86-64, and once a reachable package index; `featherbench plan --slurm` needs neither";
+const ADVICE: &str = "sweeps need Python 3.11 or later with venv on Linux x86-64, and once a reachable package index; `featherbench plan --slurm` needs neither";
 
 /// The Python in which HyperQueue is installed; it is installed if need be. The stamp is written last: an installation that broke off is not taken.
 pub fn install(root: &Root) -> Result<PathBuf, Fail> {
@@ -30,8 +29,8 @@ pub fn install(root: &Root) -> Result<PathBuf, Fail> {
         return Ok(python);
     }
     let bar = spinner("installing HyperQueue (10 MB) …");
-    let environment = Environment::make(&bar, &folder.join("venv"), ADVICE)?;
-    environment.install(&["--no-deps".into(), "--require-hashes".into(), "-r".into(), requirements.into_os_string()])?;
+    let packages: [OsString; 4] = ["--no-deps".into(), "--require-hashes".into(), "-r".into(), requirements.into_os_string()];
+    let environment = Environment::install(&bar, &folder.join("venv"), ADVICE, &packages)?;
     bar.finish_and_clear();
     ::featherbench_results::atomic_write(&installed, stamp.as_bytes())?;
     Ok(environment.python)

@@ -8,7 +8,7 @@ use std::os::unix::fs::symlink;
 const TABLE: &str = r#"
 [chain]
 title = "Chain"
-package = { name = "numpy", version = "2.4.6", licence = "BSD-3-Clause", home = "https://numpy.org" }
+package = { name = "numpy", version = "2.4.6", released = "2026-01-31", licence = "BSD-3-Clause", home = "https://numpy.org" }
 start = { kind = "python", module = "chain" }
 "#;
 

@@ -100,7 +100,7 @@ fn a_robot_without_properties_is_in_no_class_with_a_condition_on_them() {
 fn lacks_have_the_same_classes() {
     for (conditions, known) in MET.iter().map(|met| (met, true)).chain(UNMET.iter().map(|unmet| (unmet, false))) {
         let text = format!(
-            "[crane]\ntitle = \"C\"\npackage = {{ name = \"c\", version = \"2\", licence = \"MIT\", home = \"https://example.org\" }}\nstart = {{ kind = \"python\", module = \"c\" }}\n[[crane.lacks]]\n{conditions}\nreason = \"not made for it\"\n"
+            "[crane]\ntitle = \"C\"\npackage = {{ name = \"c\", version = \"2\", released = \"2026-01-31\", licence = \"MIT\", home = \"https://example.org\" }}\nstart = {{ kind = \"python\", module = \"c\" }}\n[[crane.lacks]]\n{conditions}\nreason = \"not made for it\"\n"
         );
         let engines = Engines::parse(&text, Path::new("engines.toml")).unwrap();
         let gates = with_robot(Gates::default().with_lacks(engines.lacks()));

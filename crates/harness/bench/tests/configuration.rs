@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const GATE: &str = "[[gate]]\nstudy = \"agreement\"\nquantities = [\"id\"]\nmetric = \"scaled\"\nbound = 1e-14\nreason = \"rounding\"\n";
 const DEVIATION: &str =
     "version = \"1\"\n[[deviation]]\nid = \"k\"\nverdict = \"fail\"\nreason = \"known\"\nreproduction = \"not reproduced\"\n";
-const ENGINE: &str = "[e]\ntitle = \"T\"\npackage = { name = \"p\", version = \"1\", licence = \"MIT\", home = \"https://example.org\" }\nstart = { kind = \"python\", module = \"m\" }\n[[e.lacks]]\nrobots = [\"m\"]\nreason = \"none\"\n";
+const ENGINE: &str = "[e]\ntitle = \"T\"\npackage = { name = \"p\", version = \"1\", released = \"2026-01-31\", licence = \"MIT\", home = \"https://example.org\" }\nstart = { kind = \"python\", module = \"m\" }\n[[e.lacks]]\nrobots = [\"m\"]\nreason = \"none\"\n";
 const SUITE: &str = "about = \"a suite\"\nseed = 1\n[[robot]]\ngenerate = \"humanoid\"\nfamily = \"humanoid\"\n";
 
 /// Asserts that an error names its file and contains these words.
@@ -290,7 +290,7 @@ fn ranges_name_what_is_wrong() {
 const PYTHON: &str = r#"
 [zed]
 title = "Zed"
-package = { name = "zed-py", version = "1.2", licence = "MIT", home = "https://example.org" }
+package = { name = "zed-py", version = "1.2", released = "2026-01-31", licence = "MIT", home = "https://example.org" }
 start = { kind = "python", module = "zed" }
 reads = ["mjcf"]
 compiles = "mjcf"
@@ -300,7 +300,7 @@ clock = "estimates"
 const COMPILED: &str = r#"
 [built]
 title = "Built"
-package = { name = "built", version = "3", licence = "MIT", home = "https://example.org" }
+package = { name = "built", version = "3", released = "2026-01-31", licence = "MIT", home = "https://example.org" }
 start = { kind = "cargo", folder = "built", program = "built-oracle" }
 [a-native]
 title = "Zed, in C"
@@ -319,6 +319,8 @@ fn engines_are_described_in_the_order_of_their_file() {
     assert!(engines.compiler(FileFormat::Urdf).is_none());
     let native = engines.get("a-native").unwrap();
     assert_eq!(engines.package(native).unwrap().version, "1.2");
+    assert_eq!(engines.released("a-native", "1.2"), Some("2026-01-31"), "that of the engine which it is built of");
+    assert_eq!(engines.released("a-native", "1.3"), None, "another version has another day");
     let unknown = engines.get("zad").unwrap_err();
     assert!(unknown.contains("'zad'") && unknown.contains("zed, built, a-native"), "{unknown}");
 }
@@ -335,6 +337,9 @@ fn engines_name_what_is_wrong() {
         (both().replace("[\"cc\"]", "[]"), "[a-native]: start: compilers"),
         (both().replace("language = \"C\"", "language = \"Pascal\""), "Pascal"),
         (both().replace("version = \"1.2\", ", ""), "version"),
+        (both().replace("released = \"2026-01-31\", ", ""), "released"),
+        (both().replace("2026-01-31", "31 January"), "released = \"31 January\" is no day as 2026-01-31"),
+        (both().replace("2026-01-31", "2026-1-31"), "[zed]: released"),
         (both().replace("title = \"Zed\"\n", ""), "title"),
         (both().replace("clock = \"measures\"", "clock = \"guesses\""), "guesses"),
         (both().replace("reads = [\"mjcf\"]", "reads = [\"sdf\"]"), "sdf"),

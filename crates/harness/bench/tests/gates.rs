@@ -69,7 +69,7 @@ reproduction = "not reproduced"
 const ENGINES: &str = r#"
 [crane]
 title = "T"
-package = { name = "crane", version = "2", licence = "MIT", home = "https://example.org" }
+package = { name = "crane", version = "2", released = "2026-01-31", licence = "MIT", home = "https://example.org" }
 start = { kind = "python", module = "m" }
 [[crane.lacks]]
 quantities = ["com"]

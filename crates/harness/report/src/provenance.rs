@@ -10,6 +10,9 @@ use crate::numbers::short;
 use crate::overview::{Overview, robot_chunk};
 use crate::section::Section;
 
+/// The fact of an engine's build that has a column of its own: the interpreter of an oracle in Python.
+const PYTHON: &str = "python";
+
 /// Writes the section.
 pub fn section(run: &RunInfo, overview: &Overview) -> Section {
     Section::new("provenance", "Provenance", body(run, overview))
@@ -31,18 +34,20 @@ fn engines(run: &RunInfo, overview: &Overview) -> Markup {
         h3 { "Engines" }
         div.scroll {
             table.compact {
-                thead { tr { th scope="col" { "engine" } th scope="col" { "version" } th scope="col" { "answers" } th scope="col" { "status" } th scope="col" { "build" } } }
+                thead { tr { th scope="col" { "engine" } th scope="col" { "version" } th scope="col" { "released" } th scope="col" { "Python" } th scope="col" { "answers" } th scope="col" { "status" } th scope="col" { "build" } } }
                 tbody {
                     @for engine in &run.engines {
                         tr {
                             th scope="row" { (blocks::engine(overview, &engine.name)) }
                             td { code { (engine.version) } }
+                            td.nowrap { (engine.released) }
+                            td { @if let Some(python) = engine.build.get(PYTHON) { code { (python) } } }
                             td { (engine.source) }
                             td {
                                 @if engine.status == "ok" { span.badge.pass { "✓ ok" } } @else { span.badge.error { "! " (engine.status) } }
                                 @if !engine.reason.is_empty() { " " (engine.reason) }
                             }
-                            td.build { @for (name, value) in &engine.build { span.nowrap { (name) "=" code { (value) } } " " } }
+                            td.build { @for (name, value) in engine.build.iter().filter(|(name, _)| *name != PYTHON) { span.nowrap { (name) "=" code { (value) } } " " } }
                         }
                     }
                 }

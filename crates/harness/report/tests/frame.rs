@@ -228,6 +228,7 @@ fn conventions_are_listed_by_engine_with_their_tests() {
     let engine = |name: &str, source| EngineInfo {
         name: name.into(),
         version: String::new(),
+        released: String::new(),
         source,
         build: [].into(),
         status: "ok".into(),

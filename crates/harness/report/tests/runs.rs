@@ -9,6 +9,7 @@ fn past(day: u8, suite: &str, version: &str, row: Row) -> Past {
     let engine = EngineInfo {
         name: "drake".into(),
         version: version.into(),
+        released: String::new(),
         source: EngineSource::Live,
         build: [].into(),
         status: "ok".into(),

@@ -138,6 +138,9 @@ pub struct EngineInfo {
     pub name: String,
     /// The version it reports.
     pub version: String,
+    /// The day on which that version was released. Empty if it is not known; an older version of this file did not say it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub released: String,
     /// The source of its answers.
     pub source: EngineSource,
     /// Build flags and the like, by name.

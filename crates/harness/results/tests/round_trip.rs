@@ -245,6 +245,7 @@ fn run_info() -> RunInfo {
         engines: vec![EngineInfo {
             name: "featherbench".into(),
             version: "0.1.0".into(),
+            released: "2026-01-31".into(),
             source: EngineSource::Own,
             build: BTreeMap::from([("fma".into(), "on".into())]),
             status: "ok".into(),

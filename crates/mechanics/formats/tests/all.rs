@@ -4,6 +4,7 @@ mod continua;
 mod datasets;
 mod loops;
 mod mjcf_import;
+mod mjcf_told;
 mod neutral;
 mod residuals;
 mod robots;

@@ -414,7 +414,7 @@ fn a_skip_is_red_unless_it_is_known_that_it_is_not_offered() {
     let conditions = suite(&records).conditions(&gates(""), &records, true);
     first_names_the_double(&conditions, &records, GateKind::Unlisted, &[]);
     let not_offered = |more: &str| {
-        let engine = "[double]\ntitle = \"T\"\npackage = { name = \"double\", version = \"1\", licence = \"MIT\", home = \"https://example.org\" }\nstart = { kind = \"python\", module = \"m\" }\n";
+        let engine = "[double]\ntitle = \"T\"\npackage = { name = \"double\", version = \"1\", released = \"2026-01-31\", licence = \"MIT\", home = \"https://example.org\" }\nstart = { kind = \"python\", module = \"m\" }\n";
         let text = format!("{engine}[[double.lacks]]\nrobots = [\"joints-*\"]\nreason = \"a known cause\"\n{more}");
         gates("").with_lacks(Engines::parse(&text, Path::new("engines.toml")).unwrap().lacks())
     };

@@ -51,6 +51,8 @@ pub struct Package {
     pub name: String,
     /// The exact version.
     pub version: String,
+    /// The day on which the index got that version, as `2026-01-31`.
+    pub released: String,
     /// SPDX expression of the engine's licence.
     pub licence: String,
     /// The engine's home page.
@@ -193,6 +195,11 @@ impl Engines {
                 }
                 _ => return wrong("give `of` for a start of the kind native, and `package` for any other".into()),
             }
+            if let Some(Package { released, .. }) = &engine.package
+                && !is_day(released)
+            {
+                return wrong(format!("released = \"{released}\" is no day as 2026-01-31"));
+            }
             if let Start::Native(library) = &engine.start
                 && (library.compilers.is_empty() || library.packages.is_empty())
             {
@@ -240,6 +247,12 @@ impl Engines {
         engine.package.as_ref().or_else(of)
     }
 
+    /// The day on which a version of an engine was released; none but that of the described version is known.
+    pub fn released(&self, name: &str, version: &str) -> Option<&str> {
+        let package = self.package(self.0.iter().find(|engine| engine.name == name)?)?;
+        (package.version == version).then_some(package.released.as_str())
+    }
+
     /// What the engines do not offer, each with the engine's name and version.
     pub fn lacks(&self) -> Vec<Lack> {
         let of_engine = |engine: &DescribedEngine| -> Vec<Lack> {
@@ -259,4 +272,11 @@ impl Engines {
     pub fn compiler(&self, format: FileFormat) -> Option<&DescribedEngine> {
         self.0.iter().find(|engine| engine.compiles == Some(format))
     }
+}
+
+/// Whether a text is a year, a month and a day with all their digits.
+fn is_day(text: &str) -> bool {
+    let digits = |part: &str, count: usize| part.len() == count && part.bytes().all(|byte| byte.is_ascii_digit());
+    let parts: Vec<&str> = text.split('-').collect();
+    matches!(parts[..], [year, month, day] if digits(year, 4) && digits(month, 2) && digits(day, 2))
 }

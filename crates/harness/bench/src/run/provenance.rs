@@ -120,6 +120,7 @@ mod tests {
         let engine = |name: &str, key: &str, hash: &str| EngineInfo {
             name: name.into(),
             version: "1".into(),
+            released: String::new(),
             source: EngineSource::Live,
             build: [(key.to_owned(), hash.to_owned())].into(),
             status: "ok".into(),

@@ -10,8 +10,9 @@
 //! - A body with several joints becomes a chain of bodies. All but the last have no mass, and are named `body/joint`.
 //! - A joint's frame is at its anchor. Where that is not the body's origin, a frame has the body's name.
 //! - Bodies without joints are merged, each leaving a frame with its name.
-//! - Left out with a note: springs, gravity compensation, and the sections contact, equality, tendon, actuator, sensor. Left out without
-//!   one: what is only seen (sites, cameras, lights, materials), keyframes, and limits and bounds of balls.
+//! - Left out with a note: springs, gravity compensation, limits of balls, the sections contact, equality, tendon, actuator, sensor, and
+//!   any other attribute or element by its name, of whatever version of MJCF. Left out without one: names and numbers for the user, what is
+//!   only seen (sites, cameras, lights, materials), assets, memory and keyframes.
 //!
 //! Limits: 10 MB, a million XML nodes, no document type declaration. Nesting uses no stack.
 //!

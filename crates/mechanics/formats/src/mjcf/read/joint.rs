@@ -14,8 +14,8 @@ pub(super) struct Joint {
     pub here: Transform<f64>,
     /// The motion from the coordinate `ref`, at which the file draws the body, to 0.
     pub back: Transform<f64>,
-    /// Whether something is left out that a description does not have: a spring.
-    pub spring: bool,
+    /// What is left out because a description does not have it.
+    pub left_out: Vec<&'static str>,
 }
 
 /// A `<joint>` or `<freejoint>`.
@@ -25,7 +25,13 @@ pub(super) fn read(joint: Element, name: String, settings: &Settings) -> Result<
             return Err(joint.problem(MjcfProblem::NotRead { what: format!("the aligned free joint of {}", joint.owner) }));
         }
         let described = JointDescription { name, kind: JointType::Free, ..JointDescription::default() };
-        return Ok(Joint { described, here: Transform::identity(), back: Transform::identity(), spring: false });
+        let mut left_out = Vec::new();
+        for attribute in ["armature", "damping", "frictionloss", "stiffness"] {
+            if has(joint, attribute)? {
+                left_out.push(attribute);
+            }
+        }
+        return Ok(Joint { described, here: Transform::identity(), back: Transform::identity(), left_out });
     }
     let words = [("hinge", 'h'), ("slide", 's'), ("ball", 'b')];
     let kind = joint.word("type", &words, "hinge, slide, ball, free")?.unwrap_or('h');
@@ -51,6 +57,7 @@ pub(super) fn read(joint: Element, name: String, settings: &Settings) -> Result<
         'h' if zero != 0.0 => Transform::new(about(unit, -angle(zero)), Vec3::zero()),
         _ => Transform::identity(),
     };
+    let mut left_out = Vec::new();
     // Of several numbers (a polynomial of the speed) the first is the linear part.
     let every = |name: &str, most: usize| -> Result<Vec<f64>, At> {
         let first = joint.some_numbers(name, 1, most)?.map_or(0.0, |numbers| numbers[0]);
@@ -66,18 +73,29 @@ pub(super) fn read(joint: Element, name: String, settings: &Settings) -> Result<
     };
     let range = joint.numbers::<2>("range")?;
     let limited = joint.flag_or_auto("limited")?.unwrap_or(settings.autolimits && range.is_some_and(|[a, b]| a != 0.0 || b != 0.0));
-    if let (true, true, Some([lower, upper])) = (limited, kind != 'b', range) {
+    if kind == 'b' && limited {
+        left_out.push("limit");
+    } else if let (true, Some([lower, upper])) = (limited, range) {
         (described.lower, described.upper) = (vec![angle(lower)], vec![angle(upper)]);
     }
     let force = joint.numbers::<2>("actuatorfrcrange")?;
     let bounded = joint.flag_or_auto("actuatorfrclimited")?.unwrap_or(settings.autolimits && force.is_some());
     // A description has one bound for both directions.
-    if let (true, true, Some([low, high])) = (bounded, kind != 'b', force)
-        && low == -high
-        && high > 0.0
-    {
-        described.effort = vec![high];
+    match force {
+        Some([low, high]) if bounded && kind != 'b' && low == -high && high > 0.0 => described.effort = vec![high],
+        Some(_) if bounded => left_out.push("bound of the actuators' force"),
+        _ => {}
     }
-    let spring = joint.some_numbers("stiffness", 1, 3)?.is_some_and(|numbers| numbers.iter().any(|x| *x != 0.0));
-    Ok(Joint { described, here: Transform::new(Mat3::identity(), here), back, spring })
+    if joint.some_numbers("damping", 1, 3)?.is_some_and(|numbers| numbers[1..].iter().any(|x| *x != 0.0)) {
+        left_out.push("damping after its first number");
+    }
+    if has(joint, "stiffness")? {
+        left_out.push("spring");
+    }
+    Ok(Joint { described, here: Transform::new(Mat3::identity(), here), back, left_out })
+}
+
+/// Whether any of the one to three numbers of an attribute is not zero.
+fn has(joint: Element, attribute: &str) -> Result<bool, At> {
+    Ok(joint.some_numbers(attribute, 1, 3)?.is_some_and(|numbers| numbers.iter().any(|x| *x != 0.0)))
 }

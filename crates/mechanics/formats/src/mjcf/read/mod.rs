@@ -6,6 +6,7 @@ mod include;
 mod inertial;
 mod joint;
 mod settings;
+mod told;
 mod tree;
 
 pub use error::{MjcfError, MjcfProblem};

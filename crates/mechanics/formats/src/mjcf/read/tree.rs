@@ -3,15 +3,13 @@
 use super::element::Element;
 use super::error::{At, MjcfProblem};
 use super::settings::Settings;
-use super::{inertial, joint};
+use super::{inertial, joint, told};
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement};
 use featherbench_spatial::{Mat3, Transform, Vec3};
 use roxmltree::Node;
 use std::collections::HashSet;
 use std::path::Path;
 
-/// Sections that hold what a description does not have.
-const NOTED: [&str; 7] = ["contact", "equality", "tendon", "actuator", "sensor", "deformable", "extension"];
 /// Elements of a body that make bodies, or place them.
 const MAKERS: [&str; 6] = ["frame", "replicate", "attach", "composite", "flexcomp", "include"];
 
@@ -59,7 +57,7 @@ pub(super) fn assemble(root: Node<'_, '_>, file: &str) -> Result<(Description, V
         counts: [0; 2],
         joints: HashSet::new(),
         parts: HashSet::new(),
-        notes: Vec::new(),
+        notes: told::left_out(root),
     };
     let world = Home { body: None, place: Transform::identity(), moves: false };
     let mut open = Vec::new();
@@ -77,12 +75,6 @@ pub(super) fn assemble(root: Node<'_, '_>, file: &str) -> Result<(Description, V
                 );
             }
             "include" => return Err(MjcfProblem::NotRead { what: "<include>".to_owned() }.at(offset)),
-            _ if NOTED.contains(&name) => {
-                let count = section.children().filter(Node::is_element).count();
-                if count > 0 {
-                    tree.notes.push((offset, format!("<{name}> is left out: elements {count}")));
-                }
-            }
             _ => {}
         }
     }
@@ -191,8 +183,8 @@ impl<'d> Tree<'_, 'd> {
                 let name = joint.described.name;
                 return Err(MjcfProblem::RepeatedJoint { owner: owner.to_owned(), name }.at(node.range().start));
             }
-            if joint.spring {
-                self.notes.push((node.range().start, format!("the spring of joint '{}' is left out", joint.described.name)));
+            for what in &joint.left_out {
+                self.notes.push((node.range().start, format!("the {what} of joint '{}' is left out", joint.described.name)));
             }
             joints.push(joint);
         }

@@ -127,6 +127,7 @@ pub fn run_info() -> RunInfo {
     let engine = |name: &str, version: &str, source, status: &str, reason: &str| EngineInfo {
         name: name.into(),
         version: version.into(),
+        released: "2026-01-31".into(),
         source,
         build: BTreeMap::from([("flags".into(), "-O3 -march=x86-64-v3".into()), ("eigen".into(), "3.4.0".into())]),
         status: status.into(),
