@@ -65,6 +65,65 @@ def test_inertias_of_an_engine_are_about_the_centres_of_mass(readers: Readers) -
             assert body["inertia"] == pytest.approx([1, 0, 0, 1, 0, 1], abs=1e-14)
 
 
+MESHES = 200
+SOLID = """v 0 0 0
+v 0.3 0 0
+v 0 0.2 0
+v 0 0 0.4
+f 1 3 2
+f 1 2 4
+f 1 4 3
+f 2 3 4
+"""
+OF_CLASSES = 'class="light"', 'class="unseen"', 'class="mesh"', 'type="mesh" mesh="solid"', 'type="sphere" size="0.2" mass="3"'
+
+
+def with_meshes(seed: int) -> str:
+    """Draw an arm whose bodies have meshes and others geoms, some with a mass of their class, some that collide with nothing."""
+    rng = np.random.default_rng(seed)
+    lines = ["""<mujoco model="arm"><compiler angle="radian"/><asset><mesh name="solid" file="solid.obj"/></asset>
+<default><geom friction="1"/><default class="light"><geom type="capsule" size="0.1 0.2" mass="0.25"/></default>
+<default class="unseen"><geom type="mesh" mesh="solid" contype="0" conaffinity="0"/></default>
+<default class="mesh"><geom type="mesh" mesh="solid" mass="0.5"/></default></default><worldbody>"""]
+    count = int(rng.integers(2, 5))
+    for k in range(count):
+        pose = " ".join(f"{x:.3f}" for x in rng.normal(size=3))
+        lines.append(f'<body name="b{k}" pos="{pose}"><joint name="j{k}" axis="0 1 0"/>')
+        drawn_classes = list(rng.choice(OF_CLASSES, size=int(rng.integers(1, 4))))
+        for of_class in [OF_CLASSES[3], *drawn_classes] if k == 0 and seed % 2 else drawn_classes:
+            pose, quat = (" ".join(f"{x:.3f}" for x in rng.normal(size=n)) for n in (3, 4))
+            lines.append(f'<geom {of_class} pos="{pose}" quat="{quat}"/>')
+    return "".join(lines) + "</body>" * count + "</worldbody></mujoco>"
+
+
+def test_meshes_as_pinocchio_reads_them(readers: Readers) -> None:
+    """Pinocchio has a variant's masses wherever a file has meshes: those that collide have 1 kg and 1 kg m², and a body may have none."""
+    readers.file("solid.obj", SOLID)
+    named = massless = 0
+    for seed in range(MESHES):
+        name, text = f"meshes{seed}.xml", with_meshes(seed)
+        held = readers.read("pinocchio", name, text, replay=False).bodies
+        variants = readers.read("mujoco", name, text, replay=False).header["variants"]
+        massless += any(body["mass"] == 0 for body in held)
+        texts = [variant["text"] for variant in variants if _as_heavy(variant["model"]["bodies"], held)]
+        assert texts, (seed, text)
+        named += any("every mesh has" in text for text in texts)
+    assert named > MESHES // 2  # each second file has a mesh that collides
+    assert massless > 0
+
+
+def _as_heavy(found: list[Header], due: list[Header]) -> bool:
+    """Whether the bodies have the same masses, centres of mass and inertias."""
+    scale = 1 + max(abs(x) for body in due for x in body["inertia"])
+
+    def same(one: Header, other: Header) -> bool:
+        keys = ("mass", "com", "inertia") if other["mass"] > 0 else ("mass", "inertia")
+        # The compiler diagonalises and multiplies back.
+        return all(np.allclose(one[key], other[key], rtol=0, atol=1e-12 * scale) for key in keys)
+
+    return len(found) == len(due) and all(same(one, other) for one, other in zip(found, due, strict=True))
+
+
 def _same(found: list[Header], due: list[Header]) -> None:
     assert [body["name"] for body in found] == [body["name"] for body in due]
     for one, other in zip(found, due, strict=True):

@@ -26,6 +26,8 @@ Describe = Callable[[mj.MjSpec, mj.MjModel], Header]
 Edit = Callable[[Element], None]
 MOST_BODIES = 200  # of a robot that has variants: each costs a compilation
 MOST_OF_THREE = 20  # of a robot that has variants of three edits
+MASSLESS = "mass and inertia of moving bodies must be larger than mjMINVAL"  # MuJoCo's own words
+BOUND = 2e-15  # kg and kg m²; MuJoCo's least mass of a moving body, mjMINVAL, is 1e-15
 APART = ("contact", "tendon", "actuator", "equality", "sensor", "keyframe", "custom")  # names what an edit may remove, and is in no variant
 POSE = ("pos", "quat", "axisangle", "xyaxes", "zaxis", "euler")
 ONE = {"pos": "0 0 0", "mass": "1", "diaginertia": "1 1 1"}  # the inertial that DART gives a body, kg and kg m²
@@ -72,8 +74,7 @@ def variants(path: Path, describe: Describe, model: mj.MjModel, reference: Heade
         try:
             for edit in edits:
                 edit(changed)
-            spec = _read(changed, path)
-            return describe(spec, spec.compile())
+            return _described(changed, path, describe)
         except ValueError:  # MuJoCo does not accept it
             return None
 
@@ -111,6 +112,23 @@ def _read(root: Element, path: Path) -> mj.MjSpec:
     spec = mj.MjSpec.from_string(ElementTree.tostring(root, encoding="unicode"))
     spec.modelfiledir = str(path.parent)
     return spec
+
+
+def _described(root: Element, path: Path, describe: Describe) -> Header:
+    """Describe a variant. MuJoCo accepts no moving body without mass, and other parsers do: such bodies get bounds, which are taken back."""
+    try:
+        spec = _read(root, path)
+        return describe(spec, spec.compile())
+    except ValueError as error:
+        if MASSLESS not in str(error):
+            raise
+    spec = _read(root, path)
+    spec.compiler.boundmass = spec.compiler.boundinertia = BOUND
+    description = describe(spec, spec.compile())
+    for body in description["bodies"]:
+        if body["mass"] <= MOST_BODIES * BOUND:  # those of bodies that are fixed to it are added
+            body |= {"mass": 0.0, "com": [0.0] * 3, "inertia": [0.0] * 6}
+    return description
 
 
 # ---- edits -----------------------------------------------------------------------------------------------------------------------
@@ -244,26 +262,24 @@ def _first_geoms(root: Element) -> None:
             body.remove(geom)
 
 
-def _unseen_geoms(root: Element) -> None:
-    """Remove geoms that collide with nothing, by themselves or by their default class."""
-    keys = ("contype", "conaffinity")
+def _geoms(root: Element) -> list[tuple[Element, Element, dict[str, str]]]:
+    """List the geoms of bodies: parent, geom, its attributes with those of its default classes."""
     defaults: dict[str, dict[str, str]] = {}
+    found: list[tuple[Element, Element, dict[str, str]]] = []
 
     def gather(default: Element, inherited: dict[str, str]) -> None:
         own = dict(inherited)
         for geom in default.findall("geom"):
-            own |= {key: geom.attrib[key] for key in keys if key in geom.attrib}
+            own |= geom.attrib
         defaults[default.get("class", "main")] = own
         defaults.setdefault("main", own)
         for inner in default.findall("default"):
             gather(inner, own)
 
     def walk(parent: Element, named: str) -> None:
-        for child in list(parent):
+        for child in parent:
             if child.tag == "geom":
-                held = defaults.get(child.get("class", named), {}) | child.attrib
-                if all(held.get(key, "1") == "0" for key in keys):
-                    parent.remove(child)
+                found.append((parent, child, defaults.get(child.get("class", named), {}) | child.attrib))
             else:
                 walk(child, child.get("childclass", named))
 
@@ -271,6 +287,25 @@ def _unseen_geoms(root: Element) -> None:
         gather(default, defaults.get("main", {}))
     for world in root.iter("worldbody"):
         walk(world, "main")
+    return found
+
+
+def _unseen_geoms(root: Element) -> None:
+    """Remove geoms that collide with nothing, by themselves or by their default class."""
+    for parent, geom, held in _geoms(root):
+        if all(held.get(key, "1") == "0" for key in ("contype", "conaffinity")):
+            parent.remove(geom)
+
+
+def _unit_meshes(root: Element) -> None:
+    """Take for each mesh the sphere of one kilogram and one kg m²: 2/5 m r² is one."""
+    for _, geom, held in _geoms(root):
+        if held.get("type") == "mesh":
+            geom.attrib.pop("mesh", None)
+            geom.attrib |= {"type": "sphere", "size": f"{math.sqrt(2.5):.17g}", "mass": "1", "shellinertia": "false"}
+        elif "mesh" in held:  # a shape that is fitted to a mesh
+            geom.set("mesh", held["mesh"])
+    _without_in_classes("geom", "mesh")(root)
 
 
 EDITS: tuple[tuple[str, str, Edit], ...] = (
@@ -285,6 +320,7 @@ EDITS: tuple[tuple[str, str, Edit], ...] = (
     ("shell", "shellinertia is not read: the solid is taken", _without("geom", "shellinertia")),
     ("nested_classes", "nested default classes are not read", _empty_classes),
     ("defaults", "default classes are not read", _empty_defaults),
+    ("classes", "the mass of geoms in default classes is not read", _without_in_classes("geom", "mass")),
     ("classes", "the mass and density of geoms in default classes are not read", _without_in_classes("geom", "mass", "density")),
     ("classes", "the pos of joints in default classes is not read", _without_in_classes("joint", "pos")),
     ("childclass", "childclass is not read", _without("body", "childclass")),
@@ -292,6 +328,7 @@ EDITS: tuple[tuple[str, str, Edit], ...] = (
     ("default_inertia", "every body has the engine's own 1 kg and 1 kg·m²", _unit_inertials(bare=False)),
     ("default_inertia", "bodies without geoms have the engine's own 1 kg and 1 kg·m²", _unit_inertials(bare=True)),
     ("first_geoms", "only the first geom of a body has mass", _first_geoms),
+    ("default_inertia", "every mesh has the engine's own 1 kg and 1 kg·m² at the place of its geom", _unit_meshes),
     ("unseen_geoms", "geoms that collide with nothing have no mass", _unseen_geoms),
     ("first_compiler", "only the first <compiler> is read", _first_compiler),
     ("euler_sequence", "eulerseq is not read: the sequence is xyz", _without("compiler", "eulerseq")),
