@@ -34,7 +34,6 @@ impl Parser {
                 notes: vec![note],
                 keyframes: Vec::new(),
                 written: None,
-                variants: Vec::new(),
             }),
             holds: Some(held),
             ..Self::refusing("")
@@ -232,7 +231,7 @@ fn an_engine_that_loads_an_empty_robot_does_not_refuse() {
     let robot = filed("quadruped");
     let mut parser = Parser::refusing("");
     let empty = Description { bodies: Vec::new(), frames: Vec::new(), ..robot.description.clone() };
-    parser.says = Ok(Read { description: empty, notes: Vec::new(), keyframes: Vec::new(), written: None, variants: Vec::new() });
+    parser.says = Ok(Read { description: empty, notes: Vec::new(), keyframes: Vec::new(), written: None });
     let records = records(&robot, parser);
     let read = row(&records, "differences", "import");
     assert_eq!(read.value, Some(robot.description.bodies.len() as f64));

@@ -29,6 +29,8 @@ fn cause(word: &str) -> Cause {
         "default_inertia" => Cause::DefaultInertia,
         "unseen_geoms" => Cause::UnseenGeoms,
         "first_geoms" => Cause::FirstGeoms,
+        "inertial_frame" => Cause::InertialFrame,
+        "freejoint_ignored" => Cause::FreejointIgnored,
         "euler_sequence" => Cause::EulerSequence,
         "degrees" => Cause::Degrees,
         _ => Cause::Edited,
