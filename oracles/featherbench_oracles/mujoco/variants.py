@@ -58,14 +58,15 @@ def variants(path: Path, describe: Describe, model: mj.MjModel, reference: Heade
     for section in [child for child in root if child.tag in APART]:
         root.remove(section)
     _without_looks(root)
-    found: list[Header] = []
+    found: dict[str, Header] = {}  # by their content
+    unchanged = _content(reference)
 
     def keep(cause: str, text: str, described: Header | None, edits: int = 1) -> bool:
-        if described is None or _content(described) == _content(reference):
+        if described is None or (content := _content(described)) == unchanged:
             return False
-        twin = next((other for other in found if _content(other["model"]) == _content(described)), None)
+        twin = found.get(content)
         if twin is None:
-            found.append({"cause": cause, "text": text, "edits": edits, "model": described})
+            found[content] = {"cause": cause, "text": text, "edits": edits, "model": described}
         elif edits == 1:  # this file does not tell the two apart
             twin["text"] += f", or {text}"
         return twin is None
@@ -90,7 +91,7 @@ def variants(path: Path, describe: Describe, model: mj.MjModel, reference: Heade
     of_dart = tuple(one for one in single if one[0] in OF_DART or one[2] is last[2])
     for chosen in [*several, *([of_dart] if len(of_dart) > len(OF_DART) else [])]:
         keep(chosen[0][0], ", and ".join(text for _, text, _ in chosen), read([edit for _, _, edit in chosen]), len(chosen))
-    return found
+    return list(found.values())
 
 
 def _content(description: Header) -> str:
