@@ -29,12 +29,7 @@ impl Parser {
         held.model = Model::build(&held.description).unwrap();
         let note = ImportNote { cause: "warning".into(), about: None, text: "something".into(), numbers: Vec::new() };
         Self {
-            says: Ok(Read {
-                description: says.canonical().unwrap(),
-                notes: vec![note],
-                keyframes: Vec::new(),
-                written: None,
-            }),
+            says: Ok(Read { description: says.canonical().unwrap(), notes: vec![note], keyframes: Vec::new(), written: None }),
             holds: Some(held),
             ..Self::refusing("")
         }

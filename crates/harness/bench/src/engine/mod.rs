@@ -13,8 +13,8 @@ pub(crate) mod stepper;
 pub(crate) mod with_residual;
 
 use crate::{
-    ContactSolver, Evaluation, Import, ImportVariant, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, RodSolver, SceneEngine, SemidefiniteSolver,
-    Stepper,
+    ContactSolver, Evaluation, Import, ImportVariant, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, RodSolver, SceneEngine,
+    SemidefiniteSolver, Stepper,
 };
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;

@@ -36,7 +36,8 @@ pub use singular::singular;
 pub use subtree::{SubTree, bound};
 
 use featherbench_bench::{
-    Asked, Cell, Context, Engine, FileFormat, Finished, Import as Read, ImportVariant, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study,
+    Asked, Cell, Context, Engine, FileFormat, Finished, Import as Read, ImportVariant, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot,
+    Study,
 };
 use featherbench_results::Row;
 use featherbench_study::{Entry, Made, Setup, answer};
