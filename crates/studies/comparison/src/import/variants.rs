@@ -75,7 +75,7 @@ pub(super) fn explain(found: &mut Comparison, ours: &Description, theirs: &Descr
             claimed[k] = true;
             let difference = &mut found.findings[k].difference;
             (difference.cause, difference.account) = (cause(&variant.cause), Some(variant.text.clone()));
-            if difference.field == Field::Body {
+            if difference.field == Field::Body && difference.cause != Cause::FreejointIgnored {
                 difference.theirs = LOST.into();
             }
         }
