@@ -90,6 +90,12 @@ class Readers:
             self._replay(oracle, answer)
         return Read(answer, blocks.get("keyframes"))
 
+    def variants(self, name: str, text: str) -> list[Header]:
+        """Have MuJoCo tell the variants of an MJCF."""
+        path = self.file(name, text)
+        told: list[Header] = self.oracles["mujoco"].must({"op": "variants", "file": str(path), "format": "mjcf"})[0]["variants"]
+        return told
+
     def _replay(self, oracle: Oracle, answer: Header) -> None:
         """Compare M, ID and h of the imported robot with those of the description, by the same engine or else by Pinocchio."""
         robot = Description.read(answer["model"])

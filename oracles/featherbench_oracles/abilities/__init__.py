@@ -17,6 +17,7 @@ from featherbench_oracles.abilities.rods import RodTable
 from featherbench_oracles.abilities.scenes import DerivativeVariant, Variant
 from featherbench_oracles.abilities.semidefinite import SemidefiniteTable
 from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading, State
 
 
@@ -45,6 +46,32 @@ class ReadsFiles(Protocol):
         ------
         Unsupported
             If descriptions cannot hold what the engine read.
+        ValueError
+            If the engine rejects the file.
+        """
+
+
+@runtime_checkable
+class HasVariants(Protocol):
+    """The operation `variants`, of the engine whose import is the reference of a format."""
+
+    def variants(self, path: Path, form: str) -> list[Header]:
+        """List what a file would be to parsers that read something of it otherwise.
+
+        Parameters
+        ----------
+        path : Path
+            The file, which has passed the checks of `examination`.
+        form : str
+            `urdf` or `mjcf`.
+
+        Returns
+        -------
+        list of dict
+            Of each variant `cause`, `text`, `edits` and `model`; none of a format of which another engine is the reference.
+
+        Raises
+        ------
         ValueError
             If the engine rejects the file.
         """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -76,9 +76,6 @@ class Reading:
 
     written : dict, optional
         The description with the file's own inertias, if the engine rejects those and holds repaired ones.
-
-    variants : list of dict
-        What the file would be to a parser that reads one thing of it otherwise: `cause`, `text`, `model`.
     """
 
     model: Header
@@ -87,7 +84,6 @@ class Reading:
     robot: Any
     keyframes: dict[str, Array]
     written: Header | None = None
-    variants: list[Header] = field(default_factory=list)
 
 
 class Robot(Protocol):

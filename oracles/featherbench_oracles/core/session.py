@@ -26,6 +26,7 @@ from featherbench_oracles.abilities import (
     HasSceneDerivatives,
     HasScenes,
     HasSemidefiniteSolvers,
+    HasVariants,
     ReadsFiles,
 )
 from featherbench_oracles.abilities.contact_steps import StepsOnContacts
@@ -102,6 +103,7 @@ class Session:
             "hello": self.hello,
             "prepare": self.prepare,
             "import": self.import_file,
+            "variants": self.variants,
             "states": self.set_states,
             "evaluate": self.evaluate,
             "clock": self.clock,
@@ -161,9 +163,7 @@ class Session:
         """Read a file by the engine's own parser, and tell what the engine then holds: block `keyframes` of shape (keyframes, nq)."""
         self._forget()
         self.as_read = True
-        form, base = header["format"], header.get("base", "fixed")
-        if form not in ("urdf", "mjcf") or base not in ("fixed", "free"):
-            raise ValueError(f"there is no format {form} with base {base}")
+        form, base = _asked_file(header)
         if not isinstance(self.engine, ReadsFiles):
             raise Unsupported(f"{self.engine.name} reads no files")
         reading = self.engine.read(examined(Path(header["file"])), form, base)
@@ -171,11 +171,16 @@ class Session:
         answer = {"nq": self.description.nq, "nv": self.description.nv, "model": reading.model, "notes": reading.notes}
         if reading.written is not None:
             answer["written"] = reading.written
-        if reading.variants:
-            answer["variants"] = reading.variants
         if not reading.keyframes:
             return answer, {}
         return {**answer, "keyframes": list(reading.keyframes)}, {"keyframes": np.array(list(reading.keyframes.values()))}
+
+    def variants(self, header: Header, _blocks: Blocks) -> Answer:
+        """Tell what a file would be to parsers that read something of it otherwise. The robot that the engine holds stays."""
+        form, _ = _asked_file(header)
+        if not isinstance(self.engine, HasVariants):
+            raise Unsupported(f"{self.engine.name} tells no variants of files")
+        return {"variants": self.engine.variants(examined(Path(header["file"])), form)}, {}
 
     def set_states(self, header: Header, blocks: Blocks) -> Answer:
         """Keep the states for later evaluations."""
@@ -266,6 +271,14 @@ class Session:
         if self.description is None or self.states is None:
             raise ValueError("no model and states were given before")
         return self.description, self.states
+
+
+def _asked_file(header: Header) -> tuple[str, str]:
+    """Read the format and the base of a request about a file."""
+    form, base = header["format"], header.get("base", "fixed")
+    if form not in ("urdf", "mjcf") or base not in ("fixed", "free"):
+        raise ValueError(f"there is no format {form} with base {base}")
+    return form, base
 
 
 def _range(header: Header, states: Blocks) -> tuple[int, int]:

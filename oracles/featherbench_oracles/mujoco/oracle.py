@@ -9,10 +9,11 @@ from pathlib import Path
 import mujoco as mj
 import numpy as np
 
-from featherbench_oracles.abilities import HasContactSteps, HasLoops, HasRods, HasSceneDerivatives, HasScenes, ReadsFiles
+from featherbench_oracles.abilities import HasContactSteps, HasLoops, HasRods, HasSceneDerivatives, HasScenes, HasVariants, ReadsFiles
 from featherbench_oracles.abilities.derivatives import Differentiated
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.change import CoordinateChange
+from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Quantities, Reading, State, Unsupported, mass_matrix_probe, readback_row
 from featherbench_oracles.core.robot import Description
 from featherbench_oracles.mujoco import reading, scenes, standing
@@ -279,7 +280,7 @@ def _forward_and_centred(answer: Callable[..., Array]) -> dict[str, Callable[...
     return _with_steps(answer, "difference_centred", centred=True) | _with_steps(answer, "difference", centred=False)
 
 
-class Mujoco(ReadsFiles, HasContactSteps, HasLoops, HasRods, HasScenes, HasSceneDerivatives):
+class Mujoco(ReadsFiles, HasVariants, HasContactSteps, HasLoops, HasRods, HasScenes, HasSceneDerivatives):
     """The engine MuJoCo, for `session.serve`."""
 
     name = "mujoco"
@@ -320,3 +321,7 @@ class Mujoco(ReadsFiles, HasContactSteps, HasLoops, HasRods, HasScenes, HasScene
     def read(self, path: Path, form: str, base: str) -> Reading:
         """Read a file by MuJoCo's parser and compiler."""
         return reading.read(path, form, base, MujocoRobot)
+
+    def variants(self, path: Path, form: str) -> list[Header]:
+        """List the variants of an MJCF."""
+        return reading.variants_of(path) if form == "mjcf" else []

@@ -90,8 +90,13 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
     keyframes = {_named(model.key(i).name, "key", i): neutral_q(model, model.key_qpos[i]) for i in range(model.nkey)}
     _without_extras(model)
     held = Description.read(description)
-    others = [] if form != "mjcf" or settings else variants(path, _described, model, description)
-    return Reading(description, held, notes, make(held, model), keyframes, written, others)
+    return Reading(description, held, notes, make(held, model), keyframes, written)
+
+
+def variants_of(path: Path) -> list[Header]:
+    """List the variants of an MJCF that MuJoCo compiles as it is written; of another there are none."""
+    spec, model, settings, _ = _compiled(path, False, [])
+    return [] if settings else variants(path, _described, model, _described(spec, model))
 
 
 def _described(spec: mj.MjSpec, model: mj.MjModel) -> Header:

@@ -1,7 +1,7 @@
 //! An engine that is asked about a robot no more once it has not answered in time. What did not come within the limit is a stated outcome,
 //! and the other engines go on.
 
-use featherbench_bench::{Engine, Evaluation, FileFormat, Identity, Import, NoAnswer, Quantity, Robot, RobotFile};
+use featherbench_bench::{Engine, Evaluation, FileFormat, Identity, Import, ImportVariant, NoAnswer, Quantity, Robot, RobotFile};
 use featherbench_robots::StateBatch;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -60,6 +60,12 @@ impl Engine for Patient {
         self.admit(Some(file))?;
         let kind = if file.format == FileFormat::Urdf { "URDF" } else { "MJCF" };
         self.judged(Some(file), &format!("reading the {kind}"), self.engine.read(file))
+    }
+
+    fn variants(&self, file: &RobotFile) -> Result<Vec<ImportVariant>, NoAnswer> {
+        self.admit(Some(file))?;
+        // They are no answer about the robot: one that has too many is asked for the others all the same.
+        self.judged(None, "making variants of the file", self.engine.variants(file))
     }
 
     fn prepare<'a>(

@@ -19,8 +19,8 @@ use crate::{request, shape};
 use asked::Asked;
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
 use featherbench_bench::{
-    ContactSolver, Engine, Evaluation, Identity, Import, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, RodSolver, Route, SceneEngine,
-    SemidefiniteSolver, Stepper,
+    ContactSolver, Engine, Evaluation, Identity, Import, ImportVariant, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, RodSolver, Route,
+    SceneEngine, SemidefiniteSolver, Stepper,
 };
 use featherbench_protocol::{Block, Clock, Limits, Message, Process, SystemClock, VERSION};
 use featherbench_results::EngineSource;
@@ -172,6 +172,11 @@ impl Engine for Oracle {
         read
     }
 
+    fn variants(&self, file: &RobotFile) -> Result<Vec<ImportVariant>, NoAnswer> {
+        let answer = self.session()?.ask(about("variants", file)?, Vec::new())?;
+        import::variants(&answer).map_err(|message| NoAnswer::Failed(format!("the engine's variants: {message}")))
+    }
+
     fn prepare<'a>(
         &'a self,
         robot: &'a Robot,
@@ -283,9 +288,7 @@ impl Session {
         self.states = None;
         self.reading = None;
         self.readback.clear();
-        let path = file.path.to_str().ok_or_else(|| NoAnswer::Failed("the file's path is not UTF-8; rename it".into()))?;
-        let header = json!({"op": "import", "file": path, "format": file.format.name(), "base": file.base.name()});
-        let answer = self.ask(header, Vec::new())?;
+        let answer = self.ask(about("import", file)?, Vec::new())?;
         let reading = reading(&answer).map_err(|message| NoAnswer::Failed(format!("the engine's reading: {message}")))?;
         self.reading = Some((file.clone(), reading.clone()));
         Ok(reading)
@@ -303,6 +306,12 @@ impl Session {
         self.states = Some(key);
         Ok(())
     }
+}
+
+/// The request of an operation on a file.
+fn about(op: &str, file: &RobotFile) -> Result<Value, NoAnswer> {
+    let path = file.path.to_str().ok_or_else(|| NoAnswer::Failed("the file's path is not UTF-8; rename it".into()))?;
+    Ok(json!({"op": op, "file": path, "format": file.format.name(), "base": file.base.name()}))
 }
 
 /// The answer if its status is `ok`, else the error of its status.

@@ -2,6 +2,7 @@
 
 mod accounted_readings;
 mod anywhere;
+mod asked_variants;
 mod bad_oracle;
 mod conditioning;
 mod convicted;

@@ -29,13 +29,7 @@ impl Parser {
         held.model = Model::build(&held.description).unwrap();
         let note = ImportNote { cause: "warning".into(), about: None, text: "something".into(), numbers: Vec::new() };
         Self {
-            says: Ok(Read {
-                description: says.canonical().unwrap(),
-                notes: vec![note],
-                keyframes: Vec::new(),
-                written: None,
-                variants: Vec::new(),
-            }),
+            says: Ok(Read { description: says.canonical().unwrap(), notes: vec![note], keyframes: Vec::new(), written: None }),
             holds: Some(held),
             ..Self::refusing("")
         }
@@ -233,7 +227,7 @@ fn an_engine_that_loads_an_empty_robot_does_not_refuse() {
     let robot = filed("quadruped");
     let mut parser = Parser::refusing("");
     let empty = Description { bodies: Vec::new(), frames: Vec::new(), ..robot.description.clone() };
-    parser.says = Ok(Read { description: empty, notes: Vec::new(), keyframes: Vec::new(), written: None, variants: Vec::new() });
+    parser.says = Ok(Read { description: empty, notes: Vec::new(), keyframes: Vec::new(), written: None });
     let records = records(&robot, parser);
     let read = row(&records, "differences", "import");
     assert_eq!(read.value, Some(robot.description.bodies.len() as f64));

@@ -13,8 +13,8 @@ pub(crate) mod stepper;
 pub(crate) mod with_residual;
 
 use crate::{
-    ContactSolver, Evaluation, Import, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, RodSolver, SceneEngine, SemidefiniteSolver,
-    Stepper,
+    ContactSolver, Evaluation, Import, ImportVariant, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, RodSolver, SceneEngine,
+    SemidefiniteSolver, Stepper,
 };
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
@@ -133,6 +133,15 @@ pub trait Engine: Send + Sync {
     fn read(&self, file: &RobotFile) -> Result<Import, NoAnswer> {
         let format = file.format.name();
         Err(NoAnswer::NotOffered(format!("{} has no parser of {format} files", self.identity().name)))
+    }
+
+    /// What the file would be to a parser that reads one thing of it otherwise, or several: hypotheses about the other engines, by the engine
+    /// whose import is the reference of the file's format. Others have none.
+    ///
+    /// # Errors
+    /// [`NoAnswer`] when the engine does not accept the file.
+    fn variants(&self, _: &RobotFile) -> Result<Vec<ImportVariant>, NoAnswer> {
+        Ok(Vec::new())
     }
 
     /// Prepares to evaluate a quantity by a method over a batch of states.

@@ -15,8 +15,6 @@ pub struct Import {
     pub keyframes: Vec<Vec<f64>>,
     /// The same robot with the file's own inertias, if the engine repaired them.
     pub written: Option<Description>,
-    /// What the file would be to a parser that reads one thing of it otherwise, by the engine that is the reference of its format.
-    pub variants: Vec<ImportVariant>,
 }
 
 /// The robot of a file of which one thing, or several, are read otherwise: a hypothesis about another parser.
@@ -56,9 +54,6 @@ struct Written {
     /// That of the robot with the file's own inertias.
     written: Option<String>,
     keyframes: Vec<Vec<f64>>,
-    /// Of each variant its cause, its text and the text of its description.
-    #[serde(default)]
-    variants: Vec<(String, String, u64, String)>,
 }
 
 impl Import {
@@ -67,13 +62,9 @@ impl Import {
     /// # Errors
     /// A sentence, when its description is no robot.
     pub fn to_text(&self) -> Result<String, String> {
-        let text = |description: &Description| neutral::to_string(description).map_err(|error| error.to_string());
         let written = self.written.as_ref().map(text).transpose()?;
         let (description, notes, keyframes) = (text(&self.description)?, self.notes.clone(), self.keyframes.clone());
-        let variant =
-            |variant: &ImportVariant| Ok((variant.cause.clone(), variant.text.clone(), variant.edits, text(&variant.description)?));
-        let variants = self.variants.iter().map(variant).collect::<Result<_, String>>()?;
-        serde_json::to_string(&Written { notes, description, written, keyframes, variants }).map_err(|error| error.to_string())
+        serde_json::to_string(&Written { notes, description, written, keyframes }).map_err(|error| error.to_string())
     }
 
     /// The import of a text by [`Import::to_text`].
@@ -81,13 +72,42 @@ impl Import {
     /// # Errors
     /// A sentence, when the text is no import.
     pub fn from_text(text: &str) -> Result<Self, String> {
-        let Written { notes, description, written, keyframes, variants } = serde_json::from_str(text).map_err(|error| error.to_string())?;
-        let parse = |text: &str| neutral::parse(text, "an import").map_err(|error| error.to_string());
+        let Written { notes, description, written, keyframes } = serde_json::from_str(text).map_err(|error| error.to_string())?;
         let written = written.as_deref().map(parse).transpose()?;
-        let variant = |(cause, text, edits, description): (String, String, u64, String)| {
-            Ok(ImportVariant { cause, text, edits, description: parse(&description)? })
-        };
-        let variants = variants.into_iter().map(variant).collect::<Result<_, String>>()?;
-        Ok(Self { description: parse(&description)?, notes, keyframes, written, variants })
+        Ok(Self { description: parse(&description)?, notes, keyframes, written })
     }
+}
+
+impl ImportVariant {
+    /// Variants as JSON: of each its cause, its text, the number of its edits and the text of its description.
+    ///
+    /// # Errors
+    /// A sentence, when a description is no robot.
+    pub fn to_text(variants: &[Self]) -> Result<String, String> {
+        let listed: Vec<(&str, &str, u64, String)> = variants
+            .iter()
+            .map(|variant| Ok((&*variant.cause, &*variant.text, variant.edits, text(&variant.description)?)))
+            .collect::<Result<_, String>>()?;
+        serde_json::to_string(&listed).map_err(|error| error.to_string())
+    }
+
+    /// The variants of a text by [`ImportVariant::to_text`].
+    ///
+    /// # Errors
+    /// A sentence, when the text is no list of variants.
+    pub fn from_text(text: &str) -> Result<Vec<Self>, String> {
+        let listed: Vec<(String, String, u64, String)> = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let variant = |(cause, text, edits, description): (String, String, u64, String)| {
+            Ok(Self { cause, text, edits, description: parse(&description)? })
+        };
+        listed.into_iter().map(variant).collect()
+    }
+}
+
+fn text(description: &Description) -> Result<String, String> {
+    neutral::to_string(description).map_err(|error| error.to_string())
+}
+
+fn parse(text: &str) -> Result<Description, String> {
+    neutral::parse(text, "an import").map_err(|error| error.to_string())
 }

@@ -12,8 +12,7 @@ use serde_json::Value;
 /// A sentence, when its bodies are not in an order in which states and answers can be given.
 pub(crate) fn reading(answer: &Message) -> Result<Import, String> {
     let model = answer.header.get("model").ok_or("there is no model")?;
-    let parse = |model: &Value| featherbench_formats::neutral::parse(&model.to_string(), "the model").map_err(|error| error.to_string());
-    let description = parse(model)?;
+    let description = parsed(model)?;
     let canonical = canonical(&description)?;
     // States and answers are in the order of the bodies. An order that changed here would mix them up. Numbers may be normalised.
     let order = |robot: &Description| robot.bodies.iter().map(|body| (body.name.clone(), body.parent)).collect::<Vec<_>>();
@@ -33,13 +32,24 @@ pub(crate) fn reading(answer: &Message) -> Result<Import, String> {
     }
     let keyframes = keyframes(answer, canonical.nq())?;
     let notes = answer.header.get("notes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-    let written = answer.header.get("written").map(parse).transpose().map_err(|error| format!("as written: {error}"))?;
+    let written = answer.header.get("written").map(parsed).transpose().map_err(|error| format!("as written: {error}"))?;
     if let Some(written) = written.as_ref().filter(|written| !same_tree(written, &canonical)) {
         return Err(format!("'{}' as written has other bodies or joints than as read", written.name));
     }
-    let listed = answer.header.get("variants").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-    let variants = listed.iter().map(|given| variant(given, parse)).collect::<Result<_, String>>()?;
-    Ok(Import { description: canonical, notes: notes.iter().map(note).collect(), keyframes, written, variants })
+    Ok(Import { description: canonical, notes: notes.iter().map(note).collect(), keyframes, written })
+}
+
+/// The result in an answer to `variants`.
+///
+/// # Errors
+/// A sentence, when a variant is no robot.
+pub(crate) fn variants(answer: &Message) -> Result<Vec<ImportVariant>, String> {
+    let listed = answer.header.get("variants").and_then(Value::as_array).ok_or("there are no variants")?;
+    listed.iter().map(variant).collect()
+}
+
+fn parsed(model: &Value) -> Result<Description, String> {
+    featherbench_formats::neutral::parse(&model.to_string(), "the model").map_err(|error| error.to_string())
 }
 
 /// The canonical form. A robot without a body stays one: an engine that holds no joint has read the file all the same.
@@ -51,11 +61,11 @@ fn canonical(description: &Description) -> Result<Description, String> {
 }
 
 /// The robot that the file would be, if one thing were read otherwise.
-fn variant(given: &Value, parse: impl Fn(&Value) -> Result<Description, String>) -> Result<ImportVariant, String> {
+fn variant(given: &Value) -> Result<ImportVariant, String> {
     let text = |key: &str| given.get(key).and_then(Value::as_str).map(str::to_owned).ok_or_else(|| format!("a variant has no {key}"));
     let (cause, text) = (text("cause")?, text("text")?);
     let model = given.get("model").ok_or_else(|| format!("variant {cause} has no model"))?;
-    let description = parse(model).and_then(|model| canonical(&model)).map_err(|error| format!("variant {cause}: {error}"))?;
+    let description = parsed(model).and_then(|model| canonical(&model)).map_err(|error| format!("variant {cause}: {error}"))?;
     let edits = given.get("edits").and_then(Value::as_u64).unwrap_or(1);
     Ok(ImportVariant { cause, text, edits, description })
 }

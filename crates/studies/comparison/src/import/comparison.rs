@@ -106,6 +106,11 @@ impl Comparison {
         self
     }
 
+    /// Whether a difference is of what enters the dynamics: only then a variant can be named.
+    pub(super) fn is_of_dynamics(&self) -> bool {
+        self.differences().any(|difference| difference.field.weight() == super::Weight::Dynamics)
+    }
+
     /// The differences alone.
     pub fn differences(&self) -> impl Iterator<Item = &Difference> {
         self.findings.iter().map(|finding| &finding.difference)

@@ -156,6 +156,10 @@ pub enum Cause {
     InertialIgnored,
     /// Only the first geom of a body has mass.
     FirstGeoms,
+    /// A body without `pos` stands where its inertial or its first geom is.
+    InertialFrame,
+    /// `<freejoint>` is not read: the body is fixed.
+    FreejointIgnored,
     /// Geoms that collide with nothing have no mass.
     UnseenGeoms,
     /// Only the first `<compiler>` is read.
@@ -303,6 +307,8 @@ impl Cause {
             Self::Classes => "classes",
             Self::InertialIgnored => "inertial_ignored",
             Self::FirstGeoms => "first_geoms",
+            Self::InertialFrame => "inertial_frame",
+            Self::FreejointIgnored => "freejoint_ignored",
             Self::UnseenGeoms => "unseen_geoms",
             Self::FirstCompiler => "first_compiler",
             Self::AxisLength => "axis_length",

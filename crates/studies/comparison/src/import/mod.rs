@@ -36,7 +36,8 @@ pub use singular::singular;
 pub use subtree::{SubTree, bound};
 
 use featherbench_bench::{
-    Asked, Cell, Context, FileFormat, Finished, Import as Read, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot, Study,
+    Asked, Cell, Context, Engine, FileFormat, Finished, Import as Read, ImportVariant, NoAnswer, NoSettings, OWN, Outcome, Quantity, Robot,
+    Study,
 };
 use featherbench_results::Row;
 use featherbench_study::{Entry, Made, Setup, answer};
@@ -55,6 +56,8 @@ fn of_suite(setup: &Setup) -> Made {
 
 /// The cells of an engine: its import, and its answers afterwards.
 const READING: &str = "import";
+/// The cell of the engine that is the reference: what the file would be if one thing were read otherwise.
+const VARIANTS: &str = "variants";
 /// The method of an import.
 const PARSER: &str = "parser";
 /// Why an engine that holds no joint has no answer about the robot.
@@ -77,22 +80,27 @@ impl Study for Import {
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
         for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
-            let Some(params) = params(robot) else { continue };
+            let (Some(params), Some(file)) = (params(robot), &robot.file) else { continue };
             // Our own import is the robot itself.
-            for engine in context.engines.iter().filter(|engine| engine.identity().name != OWN) {
-                let cell =
-                    |quantity: &str, method: String| Cell::new(self.name(), robot, engine.identity(), quantity, method, params.clone());
-                cells.push(cell(READING, PARSER.into()));
+            let cell = |engine: &dyn Engine, quantity: &str, method: String| {
+                Cell::new(self.name(), robot, engine.identity(), quantity, method, params.clone())
+            };
+            for engine in context.engines.iter().map(AsRef::as_ref).filter(|engine| engine.identity().name != OWN) {
+                cells.push(cell(engine, READING, PARSER.into()));
                 let usual = |quantity: Quantity| Some((quantity.name(), engine.methods(quantity).into_iter().next()?));
                 let computed = COMPUTED.into_iter().filter(|_| robot.states.nv <= LARGEST);
-                cells.extend(computed.filter_map(usual).map(|(quantity, method)| cell(quantity, method)));
+                cells.extend(computed.filter_map(usual).map(|(quantity, method)| cell(engine, quantity, method)));
             }
+            // The last one, as it asks whether the others differ.
+            let compiler = context.engine(reference(file.format)).filter(|_| file.format == FileFormat::Mjcf);
+            cells.extend(compiler.map(|engine| cell(engine, VARIANTS, PARSER.into())));
         }
         cells
     }
 
     fn evaluate(&self, asked: &Asked) -> Outcome {
-        imported(asked).unwrap_or_else(Outcome::NoAnswer)
+        let answer = if asked.cell.quantity == VARIANTS { hypotheses(asked) } else { imported(asked) };
+        answer.unwrap_or_else(Outcome::NoAnswer)
     }
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
@@ -118,6 +126,19 @@ fn reference(format: FileFormat) -> &'static str {
 fn as_read(robot: &Robot, reading: &Read) -> Result<Robot, NoAnswer> {
     let states = |model: &featherbench_model::Model<f64>| replay::carried(&robot.description, &robot.states, &reading.description, model);
     robot.as_read(reading, states).map_err(|error| NoAnswer::Failed(error.to_string()))
+}
+
+/// The variants of the file as a text, if there is a difference that they may explain. They take longer than all imports.
+fn hypotheses(asked: &Asked) -> Result<Outcome, NoAnswer> {
+    let (robot, engine) = (asked.robot()?, asked.engine()?);
+    let file = robot.file.as_ref().ok_or_else(|| NoAnswer::Failed("there is no file of this cell".into()))?;
+    let open = |other: &dyn Engine| {
+        let compared = |import: Read| Comparison::of(&robot.description, &import.description, &file.links, &import.notes);
+        other.read(file).is_ok_and(|import| compared(import).is_of_dynamics())
+    };
+    let mut others = asked.context.engines.iter().filter(|other| other.identity().name != asked.cell.engine);
+    let variants = if others.any(|other| open(other.as_ref())) { engine.variants(file)? } else { Vec::new() };
+    ImportVariant::to_text(&variants).map(Outcome::Text).map_err(NoAnswer::Failed)
 }
 
 /// The engine's import as a text, or what it computes with it.

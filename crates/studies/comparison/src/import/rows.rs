@@ -2,9 +2,9 @@
 
 use super::replay::{Answers, Reference, Replay, carried, replay};
 use super::subtree::{SubTree, unexplained};
-use super::{Class, Comparison, Effect, LARGEST, READING, SingleDifference, Weight, armature, as_read, bound, reference, remedy};
+use super::{Class, Comparison, Effect, LARGEST, READING, SingleDifference, VARIANTS, Weight, armature, as_read, bound, reference, remedy};
 use featherbench_bench::measure::worst;
-use featherbench_bench::{Cell, Context, FileFormat, Finished, Import, NoAnswer, OWN, Outcome, Quantity, Robot};
+use featherbench_bench::{Cell, Context, FileFormat, Finished, Import, ImportVariant, NoAnswer, OWN, Outcome, Quantity, Robot};
 use featherbench_results::{Row, Verdict, canonical_json};
 use featherbench_study::{row, unanswered};
 use serde_json::{Value, json};
@@ -13,11 +13,12 @@ use serde_json::{Value, json};
 pub(super) fn rows(context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
     let imports: Vec<(&Cell, Result<Import, NoAnswer>)> =
         finished.iter().filter(|(cell, _)| cell.quantity == READING).map(|(cell, outcome)| (cell, imported(outcome))).collect();
+    let variants = finished.iter().find(|(cell, _)| cell.quantity == VARIANTS).map_or_else(Vec::new, |(_, outcome)| hypotheses(outcome));
     let mut rows = Vec::new();
     for (cell, import) in &imports {
         let of_engine: Vec<&Finished> =
-            finished.iter().filter(|(other, _)| other.engine == cell.engine && other.quantity != READING).collect();
-        let engine = OfEngine { context, robot, cell, of_engine, compiler: compiler(robot, &imports) };
+            finished.iter().filter(|(other, _)| other.engine == cell.engine && ![READING, VARIANTS].contains(&&*other.quantity)).collect();
+        let engine = OfEngine { context, robot, cell, of_engine, compiler: compiler(robot, &imports), variants: &variants };
         match import {
             Ok(import) => rows.extend(engine.read(import)),
             Err(no_answer) => rows.push(engine.refused(cell, no_answer)),
@@ -32,6 +33,14 @@ fn imported(outcome: &Outcome) -> Result<Import, NoAnswer> {
         Outcome::Text(text) => Import::from_text(text).map_err(NoAnswer::Failed),
         Outcome::NoAnswer(no_answer) => Err(no_answer.clone()),
         Outcome::Values(_) => Err(NoAnswer::Failed("the outcome is numbers, and a robot is due".into())),
+    }
+}
+
+/// The variants that an outcome holds. Without them, differences have other causes or none.
+fn hypotheses(outcome: &Outcome) -> Vec<ImportVariant> {
+    match outcome {
+        Outcome::Text(text) => ImportVariant::from_text(text).unwrap_or_default(),
+        Outcome::NoAnswer(_) | Outcome::Values(_) => Vec::new(),
     }
 }
 
@@ -59,6 +68,7 @@ struct OfEngine<'a> {
     /// Its answers about the imported robot.
     of_engine: Vec<&'a Finished>,
     compiler: Option<&'a Import>,
+    variants: &'a [ImportVariant],
 }
 
 impl OfEngine<'_> {
@@ -86,9 +96,10 @@ impl OfEngine<'_> {
     fn read(&self, reading: &Import) -> Vec<Row> {
         let links = self.robot.file.as_ref().map_or(&[][..], |file| &file.links);
         let (ours, theirs) = (&self.robot.description, &reading.description);
+        let comparison = Comparison::of(ours, theirs, links, &reading.notes);
         // The variants are those of the file as MuJoCo accepts it, so they are no hypotheses about itself.
-        let variants = self.compiler.filter(|import| *import != reading).map_or(&[][..], |import| &import.variants);
-        let mut comparison = Comparison::of(ours, theirs, links, &reading.notes).explained_by(ours, theirs, variants, &reading.notes);
+        let asked = comparison.is_of_dynamics() && self.compiler.is_some_and(|import| import != reading);
+        let mut comparison = comparison.explained_by(ours, theirs, if asked { self.variants } else { &[] }, &reading.notes);
         let beside = |import: &Import| armature::beside_descriptions(&import.notes, &reading.notes);
         comparison.findings.extend(self.compiler.into_iter().flat_map(beside));
         let own = alterable(&comparison, self.robot);

@@ -29,6 +29,8 @@ fn cause(word: &str) -> Cause {
         "default_inertia" => Cause::DefaultInertia,
         "unseen_geoms" => Cause::UnseenGeoms,
         "first_geoms" => Cause::FirstGeoms,
+        "inertial_frame" => Cause::InertialFrame,
+        "freejoint_ignored" => Cause::FreejointIgnored,
         "euler_sequence" => Cause::EulerSequence,
         "degrees" => Cause::Degrees,
         _ => Cause::Edited,
@@ -73,7 +75,7 @@ pub(super) fn explain(found: &mut Comparison, ours: &Description, theirs: &Descr
             claimed[k] = true;
             let difference = &mut found.findings[k].difference;
             (difference.cause, difference.account) = (cause(&variant.cause), Some(variant.text.clone()));
-            if difference.field == Field::Body {
+            if difference.field == Field::Body && difference.cause != Cause::FreejointIgnored {
                 difference.theirs = LOST.into();
             }
         }
