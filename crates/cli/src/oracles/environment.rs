@@ -39,14 +39,15 @@ impl<'a> Environment<'a> {
             environment.add(packages)?;
             return Ok(environment);
         }
-        let mut failures = Vec::new();
+        let mut failures: Vec<String> = Vec::new();
         for interpreter in interpreters::found(uv) {
             let made = environment.remake(folder, &interpreter).and_then(|()| environment.add(packages));
             let Err(failure) = made else {
                 failures.iter().for_each(|failure| tell!("passed over: {failure}"));
                 return Ok(environment);
             };
-            failures.push(format!("Python {}: {failure}", interpreter.told()));
+            let reason = if let Fail::Missing { message, .. } = failure { message } else { failure.to_string() };
+            failures.push(format!("Python {}: {reason}", interpreter.told()));
         }
         if failures.is_empty() {
             failures.push("no python3 of version 3.11 or later, with venv, is on the path or among pyenv's".into());

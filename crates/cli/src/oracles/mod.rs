@@ -215,7 +215,7 @@ pub fn status(root: &Root) -> Result<(), Fail> {
     let engines = described(root)?;
     let installed = python(root).is_some();
     let mut broken = Vec::new();
-    say!("{:<16} {:<8} {:<11} Python, or what is built", "engine", "version", "released");
+    say!("engine           version  released    Python, or what is built");
     for engine in engines.iter() {
         let told = match &engine.start {
             Start::Python { .. } => match start(root, engine, Limits::default()) {
