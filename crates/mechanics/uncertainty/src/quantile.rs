@@ -1,11 +1,13 @@
 //! Quantiles with their errors, from the histograms of replicates.
 //!
 //! With F̂ the part of all samples below a value and se its standard error at the quantile q(p), an interval of q ends where F̂ is p ± t se (R. S.
-//! Woodruff, *JASA* 47, 1952). No density is estimated. Of N random points se = √(p (1 − p)/N). Of replicates it is that of the mean of F̂_r; parts
+//! Woodruff, *JASA* 47, 1952). No density is estimated. The sides differ, and one error is told: their root mean square. Their mean would hold the
+//! truth less often by the square of their difference. Of N random points se = √(p (1 − p)/N). Of replicates it is that of the mean of F̂_r; parts
 //! of N samples have steps of 1/N, which adds (3/4N)² to its square: Sobol' points may be on the same side of q(p) in all replicates.
 
 use crate::Histogram;
 use crate::estimate::{Estimate, of_replicates, student};
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// The probabilities of the quantiles that are told.
 pub const QUANTILES: [f64; 5] = [0.01, 0.05, 0.5, 0.95, 0.99];
@@ -35,8 +37,8 @@ impl Quantile {
                 let part = of_replicates(&parts);
                 Estimate { error: part.error.hypot(STEP / samples), ..part }
             };
-            let end = |sign: f64| all.quantile((probability + sign * part.half_width()).clamp(0.0, 1.0));
-            let error = 0.5 * (end(1.0)? - end(-1.0)?) / student(part.freedom);
+            let side = |sign: f64| Some(all.quantile((probability + sign * part.half_width()).clamp(0.0, 1.0))? - value);
+            let error = (side(1.0)?.hypot(side(-1.0)?) * FRAC_1_SQRT_2) / student(part.freedom);
             Some(Estimate { value, error, freedom: part.freedom })
         };
         Self { probability, found: found() }
