@@ -13,7 +13,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 pub const QUANTILES: [f64; 5] = [0.01, 0.05, 0.5, 0.95, 0.99];
 
 /// What a step of 1/N may hide, in steps. With R replicates of n points, all miss a point of the same stratum that has it with the probability
-/// 2/R in one case of e². Then the part is wrong by 2/(R n) = 2/N, and nothing shows it; 3/4 times Student's 2.13 is 1.6.
+/// 2/R in one case of e². Then the part is wrong by 2/(R n) = 2/N, and nothing shows it; 3/4 times Student's 2.00 is 1.5.
 const STEP: f64 = 0.75;
 
 /// The value that a part p of the samples is below; `None` where it or its error is outside the bounds of the histogram.
