@@ -24,7 +24,7 @@ struct Reader {
 }
 
 impl Reader {
-    fn new(name: &str, reads: &Description, variants: Vec<ImportVariant>, asked: &Arc<AtomicUsize>) -> Box<dyn Engine> {
+    fn boxed(name: &str, reads: &Description, variants: Vec<ImportVariant>, asked: &Arc<AtomicUsize>) -> Box<dyn Engine> {
         let identity = Identity { name: name.into(), version: "1".into(), source: EngineSource::Own, build: BTreeMap::new() };
         Box::new(Self { identity, reads: reads.clone(), variants, asked: Arc::clone(asked) })
     }
@@ -81,7 +81,7 @@ fn variants_are_asked_for_if_the_dynamics_differ() {
         let variant = ImportVariant { cause: CAUSE.into(), text: "the gravity is another".into(), edits: 1, description: other.clone() };
         let asked = Arc::new(AtomicUsize::new(0));
         let none = Arc::new(AtomicUsize::new(0));
-        let engines = [Reader::new("parser", &other, Vec::new(), &none), Reader::new("mujoco", &robot.description, vec![variant], &asked)];
+        let engines = [Reader::boxed("parser", &other, Vec::new(), &none), Reader::new("mujoco", &robot.description, vec![variant], &asked)];
         let rows = whole(&Import, &robot, &gates(""), &engines);
         assert_eq!(asked.load(Ordering::Relaxed), usize::from(case == 2), "{k}: case {case}");
         assert_eq!(none.load(Ordering::Relaxed), 0, "{k}: only the reference is asked");
