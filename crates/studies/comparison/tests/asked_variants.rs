@@ -81,7 +81,8 @@ fn variants_are_asked_for_if_the_dynamics_differ() {
         let variant = ImportVariant { cause: CAUSE.into(), text: "the gravity is another".into(), edits: 1, description: other.clone() };
         let asked = Arc::new(AtomicUsize::new(0));
         let none = Arc::new(AtomicUsize::new(0));
-        let engines = [Reader::boxed("parser", &other, Vec::new(), &none), Reader::new("mujoco", &robot.description, vec![variant], &asked)];
+        let engines =
+            [Reader::boxed("parser", &other, Vec::new(), &none), Reader::boxed("mujoco", &robot.description, vec![variant], &asked)];
         let rows = whole(&Import, &robot, &gates(""), &engines);
         assert_eq!(asked.load(Ordering::Relaxed), usize::from(case == 2), "{k}: case {case}");
         assert_eq!(none.load(Ordering::Relaxed), 0, "{k}: only the reference is asked");
