@@ -90,7 +90,9 @@ pub(super) fn left_out(root: Node<'_, '_>) -> Vec<(usize, String)> {
         let unread: BTreeSet<_> = unread.filter(|name| !NO_PART.contains(name) && !known.iter().any(|list| list.contains(name))).collect();
         if !unread.is_empty() {
             let of_name = found.entry(name).or_insert(Found { offset, attributes: BTreeSet::new() });
-            of_name.offset = of_name.offset.min(offset);
+            if offset < of_name.offset {
+                of_name.offset = offset;
+            }
             of_name.attributes.extend(unread);
         }
         open.extend(node.children().filter(Node::is_element).map(|child| (child, in_class || name == "default")));
