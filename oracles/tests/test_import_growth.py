@@ -59,13 +59,15 @@ def test_reading_is_linear(engine: str, tmp_path: Path) -> None:
     """Twice the links take about twice the steps."""
     reading = importlib.import_module(f"{OURS}.{engine}.reading")
     counts = []
-    for links in (LINKS, 2 * LINKS, 4 * LINKS):
+    # The first reading is not one of them: since Python 3.12 the instructions of a function are traced from its second call on.
+    for links in (LINKS, LINKS, 2 * LINKS, 4 * LINKS):
         file = tmp_path / f"{links}.urdf"
         file.write_text(tree(links, links))
         steps = [0]
         with counted(steps):
             reading.read(file, "urdf", "fixed", lambda *_: None)
         counts.append(steps[0] / links)
+    counts = counts[1:]
     assert counts[0] > 100, "the steps are those of our modules"
     assert max(counts[1] / counts[0], counts[2] / counts[1]) < GROWTH / 2, counts
 
