@@ -1,7 +1,7 @@
 //! Faults that are planted into runs and their data: each ends a command with its exit code and names the culprit first.
 //!
 //! Faults of answers (a wrong sign, a swapped frame, a skip that is not listed, a deviation that grew) are planted in
-//! `crates/studies/comparison/tests/convicted.rs`, a slower kernel in `history_diff.rs`, thresholds one by one in `every_gate_fires` here.
+//! `crates/studies/comparison/tests/convicted.rs` and `excused.rs`, a slower kernel in `history_diff.rs`, thresholds one by one in `every_gate_fires` here.
 
 use crate::support;
 

@@ -8,6 +8,7 @@ mod conditioning;
 mod convicted;
 mod derivatives;
 mod drawn_causes;
+mod excused;
 mod import;
 mod over_best;
 mod planted;
