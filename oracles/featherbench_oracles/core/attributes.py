@@ -11,6 +11,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from featherbench_oracles.core.messages import Header
+from featherbench_oracles.core.reading import parsed
 
 _PLACE = {"pos", "quat", "axisangle", "euler", "xyaxes", "zaxis"}
 _SOFT = {"solref", "solimp", "solreflimit", "solimplimit", "solreffriction", "solimpfriction", "margin"}
@@ -120,12 +121,12 @@ def not_compared(path: Path) -> list[Header]:
     list of dict
         A note `not_compared` for each kind of thing, with the names of the elements that have it.
     """
-    found: dict[str, list[str]] = {}
-    for kind, name in _told(ElementTree.parse(path).getroot(), path.parent, "", ""):
-        names = found.setdefault(kind, [])
-        if name and name not in names:
-            names.append(name)
-    return [{"cause": "not_compared", "about": None, "text": kind + _few(names)} for kind, names in found.items()]
+    found: dict[str, dict[str, None]] = {}  # names in order, each once
+    for kind, name in _told(parsed(path), path.parent, "", ""):
+        names = found.setdefault(kind, {})
+        if name:
+            names[name] = None
+    return [{"cause": "not_compared", "about": None, "text": kind + _few(list(names))} for kind, names in found.items()]
 
 
 def _few(names: list[str]) -> str:

@@ -10,10 +10,9 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from xml.etree import ElementTree
 
 from featherbench_oracles.core.messages import Header
-from featherbench_oracles.core.reading import note
+from featherbench_oracles.core.reading import note, parsed
 
 ROUNDING = 1e-15  # relative, of a decimal that is read
 
@@ -59,7 +58,7 @@ def written(path: Path) -> Iterator[tuple[str, Mimic]]:
     iterator of (str, Mimic)
         In the order of the file.
     """
-    for joint in ElementTree.parse(path).getroot().findall("joint"):
+    for joint in parsed(path).findall("joint"):
         mimic = joint.find("mimic")
         if mimic is not None and joint.get("type") != "fixed":
             numbers = [_number(mimic.get(key, usual)) for key, usual in (("multiplier", "1"), ("offset", "0"))]

@@ -17,6 +17,7 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -347,6 +348,16 @@ def turned(w: float, x: float, y: float, z: float) -> Array:
 # ---- the file, and what the parser prints --------------------------------------------------------------------------------------------
 
 
+def parsed(path: Path) -> ElementTree.Element:
+    """Parse a file; its root, which no caller may change. One file is asked many times in a row, and the last one is kept."""
+    return _parsed(path.read_bytes())
+
+
+@lru_cache(maxsize=1)
+def _parsed(text: bytes) -> ElementTree.Element:
+    return ElementTree.fromstring(text)
+
+
 def elements(path: Path, tag: str) -> Iterator[ElementTree.Element]:
     """Find the elements of a tag in a file, but not in files that it includes. They show what an engine left out.
 
@@ -362,7 +373,7 @@ def elements(path: Path, tag: str) -> Iterator[ElementTree.Element]:
     iterator of Element
         The elements in the file's order.
     """
-    return ElementTree.parse(path).getroot().iter(tag)
+    return parsed(path).iter(tag)
 
 
 def roots(path: Path) -> list[str]:

@@ -379,31 +379,26 @@ def _note_edits(spec: mj.MjSpec, model: mj.MjModel, notes: list[Header]) -> None
     """Note every link whose mass or inertia differs from the file's."""
     for body in spec.bodies[1:]:
         i, name = body.id, _named(body.name, "body", body.id)
-        inertia = _inertia(model, i)
-        numbers = inertial(model.body_mass[i], _inertial_frame(model, i).translation, inertia)
-        if not body.explicitinertial:
-            if model.body_mass[i] and body.geoms:
+        com, inertia = _inertial_frame(model, i).translation, _inertia(model, i)
+        held = inertial(model.body_mass[i], com, inertia)
+        if not body.explicitinertial and body.geoms:
+            if model.body_mass[i]:
                 computed = f"it has no inertial: {model.body_mass[i]:.6g} kg were computed from its geometry"
-                notes.append(note("from_geometry", name, computed, numbers))
-            elif model.body_mass[i]:
-                notes.append(
-                    note("mass_edited", name, f"no inertial in the file became {model.body_mass[i]} kg", _both(body, model, numbers))
-                )
+                notes.append(note("from_geometry", name, computed, held))
             continue
-        numbers = _both(body, model, numbers)
+        given = _given(body, model)
+        numbers = [*inertial(*given), *held]  # those of the file, then those of the model
+        if not body.explicitinertial:
+            if model.body_mass[i]:
+                notes.append(note("mass_edited", name, f"no inertial in the file became {model.body_mass[i]} kg", numbers))
+            continue
         if not abs(model.body_mass[i] - body.mass) <= EDITED * body.mass:
             notes.append(note("mass_edited", name, f"{body.mass} kg in the file became {model.body_mass[i]} kg", numbers))
-        given = _given(body, model)[2]
-        if _edited(given, inertia):
-            notes.append(note("inertia_edited", name, f"{_six(given)} in the file became {_six(inertia)} kg m²", numbers))
-        if (_inertial_frame(model, i).translation != model.body_ipos[i]).any():
+        if _edited(given[2], inertia):
+            notes.append(note("inertia_edited", name, f"{_six(given[2])} in the file became {_six(inertia)} kg m²", numbers))
+        if (com != model.body_ipos[i]).any():
             moved = f"MuJoCo computes as if the centre of mass, {tuple(model.body_ipos[i].tolist())}, were the origin, as it is within 1e-6"
             notes.append(note("com_edited", name, moved))
-
-
-def _both(body: mj.MjsBody, model: mj.MjModel, held: list[float]) -> list[float]:
-    """List the ten numbers of a link's inertia in the file, then those in the model."""
-    return [*inertial(*_given(body, model)), *held]
 
 
 def _six(inertia: Array) -> str:

@@ -92,6 +92,35 @@ fn edits_that_no_rule_makes_have_no_cause_and_the_others_their_own() {
     assert!(wrong.is_empty(), "{}:\n{}", wrong.len(), wrong.join("\n"));
 }
 
+/// A difference holds the one body that is another. If each held a robot, those of this tree would need 10 GB.
+#[test]
+fn a_difference_alone_is_our_robot_with_one_other_body() {
+    let mut random = Random::new(47, 0);
+    let ours = featherbench_doubles::robot("tree:n=2000,seed=47,spread=0.3").description.canonical().unwrap();
+    let mut theirs = ours.clone();
+    for body in &mut theirs.bodies {
+        body.joint.damping = vec![random.uniform(1.0, 2.0); body.joint.kind.nv()];
+        body.joint.friction = vec![random.uniform(1.0, 2.0); body.joint.kind.nv()];
+        body.mass *= random.uniform(1.1, 2.0);
+    }
+    let found = Comparison::of(&ours, &theirs, &[], &[]);
+    assert_eq!(found.findings.len(), 3 * ours.bodies.len());
+    for _ in 0..20 {
+        let finding = &found.findings[random.below(found.findings.len())];
+        let robot = finding.alone.as_ref().unwrap().of(&found.ours);
+        let other: Vec<usize> = (0..ours.bodies.len()).filter(|&i| robot.bodies[i] != found.ours.bodies[i]).collect();
+        assert_eq!(other.len(), 1);
+        let (body, due) = (&robot.bodies[other[0]], &theirs.bodies[other[0]]);
+        assert_eq!(body.name, finding.difference.body);
+        match finding.difference.field {
+            Field::Mass => assert_eq!(body.mass, due.mass),
+            Field::Damping => assert_eq!(body.joint.damping, due.joint.damping),
+            Field::Friction => assert_eq!(body.joint.friction, due.joint.friction),
+            field => panic!("{field:?} was not changed"),
+        }
+    }
+}
+
 /// What a file would be to parsers that read one thing otherwise.
 fn variants(ours: &Description, random: &mut Random) -> Vec<ImportVariant> {
     let variant =

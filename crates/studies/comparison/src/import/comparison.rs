@@ -26,8 +26,29 @@ pub struct Comparison {
 pub struct SingleDifference {
     /// The difference.
     pub difference: Difference,
-    /// Our robot where this one field has their value; `None` if that is not the same robot any more.
-    pub alone: Option<Description>,
+    /// What is another in our robot where this one field has their value; `None` if that is not the same robot any more.
+    pub alone: Option<Alone>,
+}
+
+/// What is another in a robot with one difference. A robot for each difference would take memory with the square of their number.
+#[derive(Clone, Debug)]
+pub enum Alone {
+    /// The body of this number.
+    Body(usize, Box<BodyDescription>),
+    /// The gravity.
+    Gravity([f64; 3]),
+}
+
+impl Alone {
+    /// The robot with it; `ours` is [`Comparison::ours`].
+    pub fn of(&self, ours: &Description) -> Description {
+        let mut robot = ours.clone();
+        match self {
+            Self::Body(i, body) => robot.bodies[*i].clone_from(body),
+            Self::Gravity(gravity) => robot.gravity = *gravity,
+        }
+        robot
+    }
 }
 
 impl Comparison {
@@ -204,10 +225,10 @@ fn shared(
         ours.bodies.iter().map(|body| names.get(body.name.as_str()).and_then(|name| place.get(name)).copied()).collect();
     let reach = fields::reach(ours).max(fields::reach(theirs));
     let written = aligned(ours, theirs, &partner, reach);
+    let told = Notes::new(ours, notes);
     let mut findings = Vec::new();
     for (i, body) in ours.bodies.iter().enumerate() {
         let (Some(aligned), Some(j)) = (&written[i], partner[i]) else { continue };
-        let about = about(ours, i, &theirs.bodies[j], notes);
         let above = ours.bodies[i].parent.and_then(|parent| partner[parent]);
         if above != theirs.bodies[j].parent {
             let name =
@@ -221,6 +242,10 @@ fn shared(
             .map(|field| (field, fields::size(field, body, aligned, reach)))
             .filter(|&(_, size)| differs(size, rounding))
             .collect();
+        if different.is_empty() {
+            continue;
+        }
+        let about = told.about(i, [body, &theirs.bodies[j]]);
         // One edit of the links may account for all fields; otherwise each field is explained alone.
         let of_mass = different.iter().any(|(field, _)| OF_MASS.contains(field));
         let parts = of_mass.then(|| Parts::new(ours, i, links, &about, reach));
@@ -254,24 +279,48 @@ fn finding(
     // Other coordinates, or none: that is not this robot with one number changed.
     let comparable = field != Field::JointType || body.joint.kind.nv() == aligned.joint.kind.nv();
     let alone = comparable.then(|| {
-        let mut alone = ours.clone();
-        fields::copy(field, aligned, &mut alone.bodies[i]);
-        alone
+        let mut alone = body.clone();
+        fields::copy(field, aligned, &mut alone);
+        Alone::Body(i, Box::new(alone))
     });
     SingleDifference { difference, alone }
 }
 
-/// The parser's notes about a body: about its link, its joint or the links that are fixed to it, or about the whole file.
-fn about<'a>(ours: &Description, i: usize, theirs: &BodyDescription, notes: &'a [ImportNote]) -> Vec<&'a ImportNote> {
-    let body = &ours.bodies[i];
-    let fixed = |name: &str| ours.frames.iter().any(|frame| frame.body == Some(i) && frame.name == name);
-    let named =
-        |name: &str| [&body.name, &body.joint.name, &theirs.name, &theirs.joint.name].into_iter().any(|own| own == name) || fixed(name);
-    let concerns = |note: &&ImportNote| match (&note.about, note.cause.as_str()) {
-        (Some(about), _) => named(about),
-        (None, _) => true,
-    };
-    notes.iter().filter(concerns).collect()
+/// The parser's notes by what they are about, and the frames of each body: files have thousands of both.
+struct Notes<'a> {
+    notes: &'a [ImportNote],
+    of_all: Vec<usize>,
+    by_name: HashMap<&'a str, Vec<usize>>,
+    frames: HashMap<usize, Vec<&'a str>>,
+}
+
+impl<'a> Notes<'a> {
+    fn new(ours: &'a Description, notes: &'a [ImportNote]) -> Self {
+        let (mut of_all, mut by_name, mut frames) = (Vec::new(), HashMap::<_, Vec<_>>::new(), HashMap::<_, Vec<_>>::new());
+        for (k, note) in notes.iter().enumerate() {
+            match &note.about {
+                Some(name) => by_name.entry(name.as_str()).or_default().push(k),
+                None => of_all.push(k),
+            }
+        }
+        for frame in &ours.frames {
+            if let Some(body) = frame.body {
+                frames.entry(body).or_default().push(frame.name.as_str());
+            }
+        }
+        Self { notes, of_all, by_name, frames }
+    }
+
+    /// The notes about body `i`: about its link, its joint or the links that are fixed to it, or about the whole file; in their order.
+    fn about(&self, i: usize, pair: [&BodyDescription; 2]) -> Vec<&'a ImportNote> {
+        let own = pair.into_iter().flat_map(|body| [body.name.as_str(), body.joint.name.as_str()]);
+        let names = own.chain(self.frames.get(&i).into_iter().flatten().copied());
+        let mut found = self.of_all.clone();
+        found.extend(names.filter_map(|name| self.by_name.get(name)).flatten());
+        found.sort_unstable();
+        found.dedup();
+        found.into_iter().map(|k| &self.notes[k]).collect()
+    }
 }
 
 /// The joints that follow another one in the file, and not in the engine: by its usual way of reading it computes other physics. That of the
@@ -294,7 +343,7 @@ fn gravity(ours: &Description, theirs: &Description) -> Option<SingleDifference>
     differs(size, fields::ROUNDING).then(|| {
         let mut finding = whole("", Field::Gravity, text(ours.gravity), text(theirs.gravity), Cause::Number);
         finding.difference.size = size;
-        finding.alone = Some(Description { gravity: theirs.gravity, ..ours.clone() });
+        finding.alone = Some(Alone::Gravity(theirs.gravity));
         finding
     })
 }

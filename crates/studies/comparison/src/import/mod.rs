@@ -29,7 +29,7 @@ mod variants;
 pub(crate) mod words;
 
 pub use answers::{Answer, Largest, Loads, answers, repairs};
-pub use comparison::{Comparison, SingleDifference};
+pub use comparison::{Alone, Comparison, SingleDifference};
 pub use difference::{Cause, Class, Difference, Field, Weight};
 pub use replay::Effect;
 pub use singular::singular;

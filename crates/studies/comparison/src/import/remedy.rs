@@ -3,6 +3,7 @@
 //! The advice is to set fields by the engine's interface after loading. It is applied to what the engine holds, and the result is compared
 //! again. If M and inverse dynamics are then still others, the advice would not help and is not given.
 
+use super::comparison::Alone;
 use super::replay::{Reference, carried};
 use super::{Class, Comparison, Field, LARGEST, bound, fields};
 use featherbench_bench::Robot;
@@ -22,10 +23,9 @@ pub(super) fn tried(ours: &Description, theirs: &Description, found: &Comparison
     // Our robot without what is set would be theirs. So theirs with what is set is ours with all that is not.
     let mut set = ours.clone();
     for (_, finding) in found.findings.iter().enumerate().filter(|(k, _)| !felt.contains(k)) {
-        let Some(alone) = &finding.alone else { continue };
-        let here = |robot: &Description| robot.bodies.iter().position(|body| body.name == finding.difference.body);
-        if let (Some(from), Some(to)) = (here(alone), here(&set)) {
-            fields::copy(finding.difference.field, &alone.bodies[from], &mut set.bodies[to]);
+        let Some(Alone::Body(_, alone)) = &finding.alone else { continue };
+        if let Some(body) = set.bodies.iter_mut().find(|body| body.name == alone.name) {
+            fields::copy(finding.difference.field, alone, body);
         }
     }
     let model = Model::build(&set).ok()?;

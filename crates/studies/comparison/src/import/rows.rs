@@ -8,6 +8,7 @@ use featherbench_bench::{Cell, Context, FileFormat, Finished, Import, ImportVari
 use featherbench_results::{Row, Verdict, canonical_json};
 use featherbench_study::{row, unanswered};
 use serde_json::{Value, json};
+use std::collections::HashMap;
 
 /// The rows of a robot, engine by engine.
 pub(super) fn rows(context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
@@ -107,17 +108,22 @@ impl OfEngine<'_> {
         let afforded = (WORK / (states.count() * states.nv * states.nv).max(1)).max(LEAST_ALONE);
         let alone = |(k, finding): (usize, &SingleDifference)| {
             let alone = finding.alone.as_ref().filter(|_| k < afforded);
-            alone.zip(own.as_ref()).and_then(|(alone, own)| own.effect_of(alone))
+            alone.zip(own.as_ref()).and_then(|(alone, own)| own.effect_of(&alone.of(&comparison.ours)))
         };
         let effects: Vec<Option<Effect>> = comparison.findings.iter().enumerate().map(alone).collect();
         let classes: Vec<Class> =
             comparison.findings.iter().zip(&effects).map(|(finding, effect)| self.class(finding, effect.as_ref())).collect();
         let remedy = remedy::tried(ours, theirs, &comparison, &classes, self.robot);
         let mut rows = vec![self.count(&comparison, &classes, remedy, reading)];
-        rows.extend(comparison.findings.iter().zip(&effects).map(|(finding, effect)| {
-            let joint = comparison.ours.bodies.iter().find(|body| body.name == finding.difference.body).map(|body| &*body.joint.name);
-            self.difference(finding, joint, effect.as_ref())
-        }));
+        let joints: HashMap<&str, &str> =
+            comparison.ours.bodies.iter().map(|body| (body.name.as_str(), body.joint.name.as_str())).collect();
+        rows.extend(
+            comparison
+                .findings
+                .iter()
+                .zip(&effects)
+                .map(|(finding, effect)| self.difference(finding, joints.get(finding.difference.body.as_str()).copied(), effect.as_ref())),
+        );
         let answers: Vec<(&Cell, Result<&[f64], &NoAnswer>)> =
             self.of_engine.iter().map(|(cell, outcome)| (cell, values(outcome))).collect();
         for (cell, answer) in &answers {

@@ -5,10 +5,10 @@
 //! for what several with fewer edits do together is not named. The others are listed with the first number that refutes them.
 
 use super::account::TESTED;
-use super::comparison::{Comparison, SingleDifference};
+use super::comparison::{Alone, Comparison, SingleDifference};
 use super::{Cause, Difference, Field, Weight, fields};
 use featherbench_bench::{ImportNote, ImportVariant};
-use featherbench_model::{BodyDescription, Description};
+use featherbench_model::Description;
 
 /// The cause of a variant.
 fn cause(word: &str) -> Cause {
@@ -100,7 +100,7 @@ fn covered(predicted: &Comparison, found: &Comparison, reach: f64) -> Result<Vec
             continue;
         }
         let at = place(difference, difference.field);
-        let same = at.filter(|&k| equal(finding, &found.findings[k], reach));
+        let same = at.filter(|&k| equal(&predicted.ours, finding, &found.findings[k], reach));
         let dynamics = difference.field.weight() == Weight::Dynamics;
         match same {
             Some(k) => {
@@ -120,23 +120,21 @@ fn refutation(due: &Difference, held: Option<&Difference>) -> String {
     format!("{body}: {} would be {}, and {held}", due.field.name().replace('_', " "), due.theirs)
 }
 
-/// Whether two differences of one place are to the same value.
-fn equal(due: &SingleDifference, held: &SingleDifference, reach: f64) -> bool {
+/// Whether two differences of one place are to the same value; `ours` is the robot of the first.
+fn equal(ours: &Description, due: &SingleDifference, held: &SingleDifference, reach: f64) -> bool {
     let field = due.difference.field;
     if field == Field::Body {
         let missing = |finding: &SingleDifference| finding.difference.cause != Cause::Added;
         return missing(due) && missing(held);
     }
-    let (Some(a), Some(b)) = (&due.alone, &held.alone) else { return due.difference.theirs == held.difference.theirs };
-    if field == Field::Gravity {
-        let far = fields::norm(a.gravity).max(fields::norm(b.gravity));
-        return fields::distance(a.gravity, b.gravity) <= TESTED * far;
+    match (&due.alone, &held.alone) {
+        (Some(Alone::Gravity(a)), Some(Alone::Gravity(b))) => fields::distance(*a, *b) <= TESTED * fields::norm(*a).max(fields::norm(*b)),
+        (Some(Alone::Body(i, a)), Some(Alone::Body(_, b))) => {
+            let links = 1 + ours.frames.iter().filter(|frame| frame.body == Some(*i)).count();
+            fields::size(field, a, b, reach) <= TESTED * links as f64
+        }
+        _ => due.difference.theirs == held.difference.theirs,
     }
-    let body = |robot: &Description| robot.bodies.iter().position(|body| body.name == due.difference.body);
-    let (Some(i), Some(j)) = (body(a), body(b)) else { return false };
-    let (x, y): (&BodyDescription, &BodyDescription) = (&a.bodies[i], &b.bodies[j]);
-    let links = 1 + a.frames.iter().filter(|frame| frame.body == Some(i)).count();
-    fields::size(field, x, y, reach) <= TESTED * links as f64
 }
 
 /// What the check after loading found: matrices that are no rotations and masses that are none. A difference of the engine in that body,
