@@ -17,6 +17,27 @@ from featherbench_oracles.core.protocol import Unsupported
 from featherbench_oracles.core.robot import Description, Joint
 from featherbench_oracles.dart.coordinates import AXES
 
+#: Bodies of a skeleton. DART makes its n × n matrices anew for each body: 9 s for 1000 bodies, 73 s for 2000.
+MOST = 1500
+
+
+def check_size(bodies: int) -> None:
+    """Refuse a robot whose skeleton would take minutes.
+
+    Parameters
+    ----------
+    bodies : int
+        The number of its bodies.
+
+    Raises
+    ------
+    Unsupported
+        If there are more than `MOST`.
+    """
+    if bodies > MOST:
+        grows = "the time in which it makes a skeleton grows with the cube of the number of bodies"
+        raise Unsupported(f"DART is asked about {MOST} bodies at most, and these are {bodies}: {grows}")
+
 
 def build(robot: Description) -> tuple[dynamics.Skeleton, list[dynamics.Joint], list[dynamics.BodyNode]]:
     """Build the skeleton of a description.
@@ -38,8 +59,9 @@ def build(robot: Description) -> tuple[dynamics.Skeleton, list[dynamics.Joint], 
     Raises
     ------
     Unsupported
-        If DART has no such robot: it has no armature.
+        If DART has no such robot: it has no armature. If the robot has more than `MOST` bodies.
     """
+    check_size(len(robot.bodies))
     skeleton = dynamics.Skeleton("robot")
     skeleton.setGravity(robot.gravity)
     joints: list[dynamics.Joint] = []

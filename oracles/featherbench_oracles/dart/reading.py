@@ -25,6 +25,7 @@ from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading, Unsupported
 from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, errors, inertial, note, overheard
 from featherbench_oracles.core.robot import Description
+from featherbench_oracles.dart.building import check_size
 
 # DART's name of a joint's type -> ours
 TYPES = {
@@ -46,6 +47,7 @@ EDITED = 1e-9  # relative difference of a link's mass that is reported as an edi
 def read(path: Path, form: str, base: str, make: Callable[[Description, dynamics.Skeleton, Any, Any], Any]) -> Reading:
     """Read a file as `abilities.ReadsFiles` says; `make` takes the description, the skeleton, its moving joints and their bodies."""
     notes: list[Header] = []
+    check_size(sum(1 for _ in elements(path, "link" if form == "urdf" else "body")))
     with overheard(path, notes):
         skeleton = _urdf(path, base) if form == "urdf" else _mjcf(path)
     for heard in notes:
