@@ -132,12 +132,16 @@ pub fn classes_and_bad_files(_: &Path) -> Outcome {
     Ok(())
 }
 
-/// A robot that is too large for a workspace has a row that says so, and no difference.
+/// A robot that is too large for a workspace, or for an engine whose time grows with the cube, has a row that says so, and no difference.
 pub fn limits(_: &Path) -> Outcome {
     let sandbox = Sandbox::new();
     sandbox.run(&["gen", "chain:n=800", "--lossy", "--out", "long.urdf"]).expect(0, &["800 bodies"]);
     let files = [sandbox.path("long.urdf")];
     compare(&files, &["--engines", "pinocchio"], &sandbox.path("memory"))
         .expect(0, &["its workspace (pinocchio.Data) needs about 9.6 GB for 800 degrees of freedom"]);
+    sandbox.run(&["gen", "chain:n=1600", "--lossy", "--out", "longer.urdf"]).expect(0, &["1600 bodies"]);
+    let files = [sandbox.path("longer.urdf")];
+    compare(&files, &["--engines", "dart"], &sandbox.path("time"))
+        .expect(0, &["DART is asked about 1500 bodies at most, and these are 160", "leave it out with --engines: DART is asked"]);
     Ok(())
 }

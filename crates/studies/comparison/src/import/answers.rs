@@ -179,7 +179,7 @@ fn graver(a: Largest, b: Largest) -> Largest {
 fn advice(read: &Row, rows: &[&Row], repaired: &[String], same: Option<bool>, open: bool, largest: Option<&Largest>) -> String {
     if read.value.is_none() {
         return if read.verdict == Verdict::Skip {
-            "give it the robot in a format that it reads: `featherbench gen`, or leave it out with --engines".into()
+            format!("leave it out with --engines: {}", first(&read.reason))
         } else {
             format!("correct what its parser names: {}", first(&read.reason))
         };
