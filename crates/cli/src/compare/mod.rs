@@ -81,7 +81,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     }
 
     let started = SystemTime::now();
-    let folder = args.out.clone().unwrap_or_else(|| run::folder(root, NAME, started));
+    let folder = run::folder(root, args.out.as_deref(), NAME, started)?;
     let about = About { suite: NAME, hash: &hash, seed: SEED, live: true, robots: &robots };
     let info = run::describe(root, provenance::collect(root.path()), &about, &opened, started)?;
     run::tell_notes(&info);

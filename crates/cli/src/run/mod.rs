@@ -20,12 +20,12 @@ use crate::robots::{self, Loaded};
 use crate::root::Root;
 use ::featherbench_results::{Culprit, Drawing, Expectation, GateKind, Row, RunInfo, quoted};
 use featherbench_bench::run::{Opening, Run};
-use featherbench_bench::{Cell, Context, Counts, Gates, Robot, Study, drawing, provenance};
+use featherbench_bench::{Cell, Context, Counts, Gates, HarnessError, Robot, Study, drawing, provenance};
 use featherbench_registry::Setup;
 use featherbench_report::Findings;
 use regex_lite::Regex;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 
 /// Everything that a run needs before its folder.
@@ -140,7 +140,7 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
         prepared.check_filter(args)?;
     }
     let started = SystemTime::now();
-    let folder = args.out.clone().unwrap_or_else(|| folder(root, &prepared.loaded.name, started));
+    let folder = folder(root, args.out.as_deref(), &prepared.loaded.name, started)?;
     let info = prepared.describe(root, args, started)?;
     tell_notes(&info);
     if let Some(shard) = args.shard {
@@ -163,10 +163,30 @@ fn studies(root: &Root, loaded: &Loaded, args: &RunArgs, program: &str) -> Resul
     Ok(studies)
 }
 
-/// A new folder in `reports`, with suite and time in its name.
-pub fn folder(root: &Root, suite: &str, started: SystemTime) -> PathBuf {
+/// The folder that is asked for; else a new one in `reports`, with suite and time in its name. That is made here: of programs that start
+/// within one second each has its own.
+///
+/// # Errors
+/// When no folder can be made there.
+pub fn folder(root: &Root, out: Option<&Path>, suite: &str, started: SystemTime) -> Result<PathBuf, Fail> {
+    if let Some(out) = out {
+        return Ok(out.to_owned());
+    }
+    let reports = root.reports();
+    let io = |source| HarnessError::io(&reports, source);
     let stamp: String = humantime::format_rfc3339_seconds(started).to_string().chars().filter(|c| !":-Z".contains(*c)).collect();
-    root.reports().join(format!("{suite}-{}", stamp.replace('T', "-")))
+    let name = format!("{suite}-{}", stamp.replace('T', "-"));
+    std::fs::create_dir_all(&reports).map_err(io)?;
+    let mut folder = reports.join(&name);
+    let mut copy = 1;
+    while let Err(source) = std::fs::create_dir(&folder) {
+        if source.kind() != std::io::ErrorKind::AlreadyExists {
+            return Err(io(source).into());
+        }
+        copy += 1;
+        folder = reports.join(format!("{name}-{copy}"));
+    }
+    Ok(folder)
 }
 
 /// Notes that are told before a run; the report has all.

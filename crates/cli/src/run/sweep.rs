@@ -143,7 +143,7 @@ fn open(root: &Root, args: &SweepArgs, whole: &RunArgs) -> Result<(PathBuf, Swee
     }
     let prepared = run::prepare(root, whole)?;
     prepared.check_filter(whole)?;
-    let folder = args.out.clone().unwrap_or_else(|| run::folder(root, &prepared.loaded.name, SystemTime::now()));
+    let folder = run::folder(root, args.out.as_deref(), &prepared.loaded.name, SystemTime::now())?;
     let plan = shard::plan(&prepared, whole)?;
     let sweep = Sweep::new(arguments, &plan, args.task_seconds);
     let io = |source| HarnessError::io(&folder, source);
