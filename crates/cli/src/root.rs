@@ -38,6 +38,11 @@ impl Root {
         self.0.join("datasets/recorded")
     }
 
+    /// Times recorded on several machines.
+    pub fn speed(&self) -> PathBuf {
+        self.0.join("datasets/speed")
+    }
+
     pub fn gates(&self) -> PathBuf {
         self.0.join("ci")
     }

@@ -20,6 +20,9 @@ pub struct ReportArgs {
     /// Draw these instruction counts too, over the run's robots and beside its times; `ci/instructions.py --out` writes them.
     #[arg(long, value_name = "FILE", requires = "figures")]
     pub instructions: Option<PathBuf>,
+    /// Print the ranking of the engines as JSON: who is right, by how much, and how fast.
+    #[arg(long)]
+    pub json: bool,
     /// Open the page.
     #[arg(long)]
     pub open: bool,

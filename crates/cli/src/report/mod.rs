@@ -27,7 +27,13 @@ pub fn write(args: &ReportArgs) -> Result<(), Fail> {
         let counted = counts.map(|counts| featherbench_speed::instructions(&info, &records, &counts));
         figures::write(folder, &info, &sections(&args.folder, &info, &records)?, counted)?;
     }
-    say!("report: {}", page.display());
+    if args.json {
+        let ranking = featherbench_registry::ranking(&info, &records);
+        let text = serde_json::to_string_pretty(&ranking).map_err(|error| Fail::input(error.to_string()))?;
+        say!("{text}");
+    } else {
+        say!("report: {}", page.display());
+    }
     show(&page, args.open)
 }
 

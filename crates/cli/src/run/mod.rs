@@ -1,11 +1,13 @@
 //! `featherbench run`: plan, evaluate, compare, judge, report.
 
+mod command;
 pub mod filter;
 pub mod hyperqueue;
 pub mod merge;
 pub mod plan;
 pub mod shard;
 pub mod sweep;
+mod times;
 
 use crate::args::RunArgs;
 use crate::fail::Fail;
@@ -18,7 +20,7 @@ use crate::progress::Bar;
 use crate::report;
 use crate::robots::{self, Loaded};
 use crate::root::Root;
-use ::featherbench_results::{Culprit, Drawing, Expectation, GateKind, Row, RunInfo, quoted};
+use ::featherbench_results::{Culprit, Drawing, Expectation, GateKind, Row, RunInfo};
 use featherbench_bench::run::{Opening, Run};
 use featherbench_bench::{Cell, Context, Counts, Gates, HarnessError, Robot, Study, drawing, provenance};
 use featherbench_registry::Setup;
@@ -82,7 +84,8 @@ impl Prepared {
     pub fn describe(&self, root: &Root, args: &RunArgs, started: SystemTime) -> Result<RunInfo, Fail> {
         let Loaded { name, hash, suite, robots, .. } = &self.loaded;
         let about = About { suite: name, hash, seed: suite.seed, live: args.asked.live, robots };
-        describe(root, self.program.clone(), &about, &self.opened, started)
+        let info = describe(root, self.program.clone(), &about, &self.opened, started)?;
+        Ok(RunInfo { recorded_times: times::recorded(root)?, ..info })
     }
 
     /// Judges the rows of a run, writes it with its report, and tells the end.
@@ -149,7 +152,7 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let mut run = Run::open(&folder, opening(args), info)?;
     prepared.check_filter(args)?;
     run.info.seconds.insert("setup".into(), prepared.start.elapsed().as_secs_f64());
-    let rows = run.conduct(&prepared.studies, &prepared.context(), &|cell| prepared.keeps(cell), &Bar::new())?;
+    let rows = run.conduct(&prepared.studies, &prepared.context(), &|cell| prepared.keeps(cell), &Bar::of_run(&folder))?;
     prepared.conclude(args, run, &rows, Vec::new())
 }
 
@@ -216,13 +219,12 @@ pub struct About<'a> {
 
 /// Everything about the run that its rows share; `program` has the facts about program and machine.
 pub fn describe(root: &Root, program: RunInfo, about: &About, opened: &Opened, started: SystemTime) -> Result<RunInfo, Fail> {
-    let command = std::env::args().skip(1).map(|word| quoted(&word));
     let mut conventions = featherbench_bench::conventions::read(&root.conventions())?;
     conventions.retain(|row| opened.infos.iter().any(|engine| engine.name == row.engine));
     Ok(RunInfo {
         suite: about.suite.into(),
         suite_hash: about.hash.into(),
-        command: ["cargo run --release --".to_owned()].into_iter().chain(command).collect::<Vec<_>>().join(" "),
+        command: command::typed(root),
         started: humantime::format_rfc3339_seconds(started).to_string(),
         seed: about.seed,
         live: about.live,

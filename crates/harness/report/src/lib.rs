@@ -57,7 +57,7 @@ pub use chunks::{TIMES, UNPASSED};
 pub use error::ReportError;
 pub use findings::{Findings, Found, Status};
 pub use overview::{EVERYONE, Overview, Pages, Robot, robot_chunk};
-pub use section::{Finding, Mark, Part, Section, Shown};
+pub use section::{Finding, Lead, Mark, Part, Section, Shown};
 pub use summary::{summary, unmet};
 pub use tally::{Tally, worst_first};
 pub use write::{ReportPaths, write};

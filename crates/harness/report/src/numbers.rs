@@ -63,6 +63,17 @@ pub fn listed(names: &[String]) -> String {
     }
 }
 
+/// Lines of a table for a terminal: the columns `words` begin at the left, the others, which are numbers, end at the right.
+pub fn aligned<const N: usize>(lines: &[[String; N]], words: &[usize]) -> Vec<String> {
+    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
+    let widths: [usize; N] = std::array::from_fn(width);
+    let cell = |(column, text): (usize, &String)| {
+        let width = widths[column];
+        if words.contains(&column) { format!("{text:<width$}") } else { format!("{text:>width$}") }
+    };
+    lines.iter().map(|line| line.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ").trim_end().to_owned()).collect()
+}
+
 /// The larger of two numbers; NaN when either is, so that a fold keeps every NaN.
 pub fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
@@ -85,6 +96,8 @@ mod tests {
         assert_eq!((count(1, "row"), count(0, "row")), ("1 row".into(), "0 rows".into()));
         assert_eq!((count(1, "body"), count(2, "body"), count(2, "key")), ("1 body".into(), "2 bodies".into(), "2 keys".into()));
         assert_eq!(listed(&["a".into(), "b".into(), "c".into()]), "a, b and c");
+        let table = [["engine", "time"], ["ours", "1"]].map(|line| line.map(str::to_owned));
+        assert_eq!(aligned(&table, &[0]), ["engine  time", "ours       1"]);
         assert_eq!(["all known", "1 row", ""].map(capitalised), ["All known", "1 row", ""]);
     }
 }

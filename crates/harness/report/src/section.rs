@@ -31,6 +31,8 @@ pub struct Section {
     pub script: &'static str,
     /// Its style, if it needs more than the report's own.
     pub style: &'static str,
+    /// What it answers at the head of the first page and of the terminal's lines, above the findings.
+    pub lead: Option<Lead>,
     /// What it adds to the verdict.
     pub finding: Option<Finding>,
     /// What it answers on the first page in its full width, below the findings.
@@ -93,6 +95,15 @@ pub struct Mark {
     pub engine: String,
     /// The body.
     pub body: String,
+}
+
+/// What a section answers before anything else.
+#[derive(Debug)]
+pub struct Lead {
+    /// On the first page.
+    pub body: Markup,
+    /// On the terminal, behind the verdict.
+    pub lines: Vec<String>,
 }
 
 /// What a section adds to the verdict.

@@ -2,7 +2,7 @@
 
 use featherbench_results::{Expectation, Row, RunInfo};
 
-use crate::findings::Findings;
+use crate::findings::{Findings, Status};
 use crate::section::Section;
 
 /// The number of findings.
@@ -10,10 +10,11 @@ const TOLD: usize = 3;
 
 /// The lines at the end of a run, in this order:
 /// 1. whether it passed, and what that means in numbers;
-/// 2. the findings that weigh most, each marked as known or new. Of a run that failed, those that turned the gate red come first;
-/// 3. how many findings of each level there are, among how many rows;
-/// 4. the gates that are not met;
-/// 5. the lines of the sections, among them how fast we are.
+/// 2. the lead of a section: who is right, by how much, and how fast. Of a run that failed it comes behind the findings;
+/// 3. the findings that weigh most, each marked as known or new. Of a run that failed, those that turned the gate red come first;
+/// 4. how many findings of each level there are, among how many rows;
+/// 5. the gates that are not met;
+/// 6. the lines of the sections, among them how fast we are.
 ///
 /// ```
 /// use featherbench_report::summary;
@@ -26,12 +27,20 @@ const TOLD: usize = 3;
 pub fn summary(run: &RunInfo, rows: &[Row], sections: &[Section]) -> Vec<String> {
     let findings = Findings::of(run, rows);
     let mut lines = vec![findings.verdict()];
+    let lead = || sections.iter().filter_map(|section| section.lead.as_ref()).flat_map(|lead| lead.lines.iter().cloned());
+    let failed = findings.status == Status::Failed;
+    if !failed {
+        lines.extend(lead());
+    }
     let (new, known): (Vec<_>, Vec<_>) = findings.found.iter().partition(|found| found.new);
     for (index, found) in new.into_iter().chain(known).take(TOLD).enumerate() {
         lines.push(format!("  {}. {}", index + 1, found.marked()));
         if !found.again.is_empty() {
             lines.push(format!("     again: {}", found.again));
         }
+    }
+    if failed {
+        lines.extend(lead());
     }
     lines.push(format!("{} among {}", findings.levels(), findings.extent()));
     lines.extend(unmet(run));

@@ -45,12 +45,16 @@ fn body(
         section #verdict class={ "verdict " (class) } {
             p.stamp { span.glyph aria-hidden="true" { (match findings.status { Status::Passed => "✓", Status::Failed => "✕", Status::Empty => "·" }) } (word) }
             h1 { (capitalised(&findings.meaning())) }
+            // Who is right, by how much and how fast; of a run that failed, what failed comes first.
+            @let lead = || html! { @for lead in sections.iter().filter_map(|section| section.lead.as_ref()) { (lead.body) } };
+            @if findings.status != Status::Failed { (lead()) }
             (tiles(findings))
             (list(drawings, findings))
             @if let Some(part) = rest {
                 details { summary { (count(findings.found.len() - TOLD, "more finding")) } (part.place()) }
             }
             (extent(findings))
+            @if findings.status == Status::Failed { (lead()) }
             @for answer in sections.iter().filter_map(|section| section.answer.as_ref()) { (answer) }
             div.columns {
                 div {

@@ -4,10 +4,12 @@
 
 mod dictionary;
 mod figures;
+mod ranking;
 
 pub use dictionary::dictionary;
 pub use featherbench_study::Setup;
 pub use figures::FIGURES;
+pub use ranking::ranking;
 
 use featherbench_answers as answers;
 use featherbench_bench::{HarnessError, Study};
@@ -59,10 +61,11 @@ pub fn of_suite(setup: &Setup) -> Result<Vec<Box<dyn Study>>, HarnessError> {
     STUDIES.iter().filter_map(|study| (study.make)(setup).transpose()).collect()
 }
 
-/// The sections of the report of a run, study by study: of each that has rows, and of those that say that they have none.
+/// The sections of the report of a run: the ranking of its engines, then study by study those of each that has rows, and of those that say
+/// that they have none.
 pub fn sections(run: &RunInfo, rows: &[Row]) -> Vec<Section> {
     let overview = Overview::of(run, rows);
-    let mut all = Vec::new();
+    let mut all = Vec::from_iter(ranking::section(run, rows, &overview));
     for study in STUDIES {
         let sections = (study.sections)(run, rows, &overview).into_iter();
         all.extend(sections.map(|section| Section { study: study.name, ..section }));

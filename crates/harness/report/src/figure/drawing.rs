@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::draw::draw;
-use super::paper::{Figure, csv_line, file};
+use super::paper::{Figure, csv_line, file, inline};
 use super::plot::Plot;
 
 impl Plot {
@@ -34,7 +34,7 @@ impl Plot {
         html! {
             div.drawing data-name=(name) {
                 @match draw(self, &[], true) {
-                    Some((size, body)) => div.paper { (PreEscaped(file(&self.title, size, body))) },
+                    Some((size, body)) => div.paper { (PreEscaped(inline(&self.title, size, body))) },
                     None => p.empty { (empty) },
                 }
             }

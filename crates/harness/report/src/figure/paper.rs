@@ -38,9 +38,18 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
 }
 
 /// The whole file: white paper, so that a figure looks alike in dark mode, in print and in a paper.
-pub(super) fn file(title: &str, [width, height]: [f64; 2], body: maud::Markup) -> String {
+pub(super) fn file(title: &str, size: [f64; 2], body: maud::Markup) -> String {
+    drawing(Some("http://www.w3.org/2000/svg"), title, size, body)
+}
+
+/// The same within a page, which needs no name of its language.
+pub(super) fn inline(title: &str, size: [f64; 2], body: maud::Markup) -> String {
+    drawing(None, title, size, body)
+}
+
+fn drawing(language: Option<&str>, title: &str, [width, height]: [f64; 2], body: maud::Markup) -> String {
     let drawing = maud::html! {
-        svg xmlns="http://www.w3.org/2000/svg" width=(at(width)) height=(at(height)) viewBox={ "0 0 " (at(width)) " " (at(height)) }
+        svg xmlns=[language] width=(at(width)) height=(at(height)) viewBox={ "0 0 " (at(width)) " " (at(height)) }
             font-family="Helvetica, Arial, 'Liberation Sans', sans-serif" font-size="13" fill="#17212b" stroke-linejoin="round" role="img" {
             title { (title) }
             rect width=(at(width)) height=(at(height)) fill="#ffffff" {}

@@ -4,6 +4,7 @@ mod imports;
 mod joints;
 mod made_up;
 mod page;
+mod ranking;
 mod speed;
 mod truth;
 // The same access to a written report as in the tests of its crate.

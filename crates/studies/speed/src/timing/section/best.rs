@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use featherbench_report::numbers::{count, listed};
+use featherbench_report::numbers::{aligned, count, listed};
 use featherbench_report::{Overview, labels};
 use featherbench_results::Row;
 use maud::{Markup, html};
@@ -70,18 +70,7 @@ pub fn lines(all: &[Best]) -> Vec<String> {
         return Vec::new();
     }
     let heads = ["the best other over ours", "our method", "mean", "least", "batch"].map(str::to_owned);
-    aligned(&[vec![heads], quantities.into_iter().map(line).collect()].concat())
-}
-
-/// Columns of one width: the first two are words, the others numbers.
-fn aligned(lines: &[[String; 5]]) -> Vec<String> {
-    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
-    let widths: [usize; 5] = std::array::from_fn(width);
-    let cell = |(column, text): (usize, &String)| {
-        let width = widths[column];
-        if column < 2 { format!("{text:<width$}") } else { format!("{text:>width$}") }
-    };
-    lines.iter().map(|line| line.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ")).collect()
+    aligned(&[vec![heads], quantities.into_iter().map(line).collect()].concat(), &[0, 1])
 }
 
 /// Writes the table.
