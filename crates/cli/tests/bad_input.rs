@@ -150,6 +150,41 @@ fn wrong_usage_is_exit_code_two() {
     sandbox.run(&["gen", "chain", "--set", "m=3"]).expect(2, &["no parameter 'm'", "layout"]);
 }
 
+/// A folder that holds no run, and a number that is none, are told as that.
+#[test]
+fn what_is_no_run_and_no_seed_is_told() {
+    let sandbox = Sandbox::new();
+    std::fs::create_dir(sandbox.path("empty")).unwrap();
+    sandbox.write("file", "");
+    for command in [&["gate"][..], &["report"], &["explain", "3f"], &["reduce"], &["history"], &["export", "--parquet", "out"]] {
+        for (folder, words) in [("nowhere", "there is no such folder"), ("empty", "the folder is empty"), ("file", "")] {
+            sandbox.run(&[command, &[folder]].concat()).expect(2, &[folder, words]);
+        }
+    }
+    sandbox.run(&["diff", "nowhere", "empty"]).expect(2, &["nowhere: there is no such folder"]);
+    for seed in ["abc", "-1", "1.5", "18446744073709551616"] {
+        for command in [&["run"][..], &["gen", "random_tree"], &["uncertainty", "chain:n=2"], &["residuals", "chain:n=2"]] {
+            sandbox.run(&[command, &["--seed", seed]].concat()).expect(2, &[seed, "a seed is a whole number from 0 to"]);
+        }
+    }
+    sandbox.run(&["run", "--suite", "smoke", "--recorded", "nowhere"]).expect(2, &["--recorded nowhere: there is no such folder"]);
+}
+
+/// Programs that start within one second have a folder each.
+#[test]
+fn many_at_once_have_folders_of_their_own() {
+    let sandbox = Sandbox::new();
+    let run = ["run", "--suite", "smoke", "--no-timing", "--filter", "agreement/chain-planar-2/featherbench/id/"];
+    let quiet = || sandbox.command(&run).stdout(std::process::Stdio::null()).stderr(std::process::Stdio::piped()).spawn().unwrap();
+    let started: Vec<_> = (0..8).map(|_| quiet()).collect();
+    for run in started {
+        let ended = run.wait_with_output().unwrap();
+        assert_eq!(ended.status.code(), Some(0), "{}", String::from_utf8_lossy(&ended.stderr));
+    }
+    let folders: Vec<_> = std::fs::read_dir(sandbox.path("reports")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    assert_eq!(folders.iter().filter(|folder| folder.join("checksums.txt").is_file()).count(), 8, "{folders:?}");
+}
+
 #[test]
 fn runs_share_a_catalogue_only_where_cases_can_name_theirs() {
     let sandbox = Sandbox::new();
@@ -288,7 +323,12 @@ fn what_cannot_be_compared_gets_advice() {
     sandbox
         .run(&["compare", "deep.xml", "wide.urdf"])
         .expect(2, &["not compared: deep.xml", "not compared: wide.urdf", "2 files cannot be compared"]);
-    sandbox.run(&["compare", "nowhere.urdf"]).expect(2, &["nowhere.urdf"]);
+    let ended = sandbox.run(&["compare", "nowhere.urdf"]);
+    ended.expect(2, &["nowhere.urdf"]);
+    assert_eq!(ended.errors.matches("nowhere.urdf").count(), 1, "a refusal is told once: {ended:?}");
+    // An overflow is the file's fault, and is told before engines are asked.
+    let heavy = sandbox.write("heavy.urdf", &urdf(JOINT).replacen("mass value=\"1\"", "mass value=\"1e300\"", 1));
+    sandbox.run(&["compare", heavy.to_str().unwrap()]).expect(2, &["heavy.urdf", "its mass is 1e300 kg", "overflow"]);
     sandbox.run(&["compare", "datasets"]).expect(2, &["this is a folder"]);
     let good = sandbox.write("good.urdf", &urdf(JOINT));
     sandbox.run(&["compare", good.to_str().unwrap(), "--engines", "pinochio"]).expect(2, &["'pinochio'", "pinocchio, mujoco, drake"]);

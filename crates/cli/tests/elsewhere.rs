@@ -51,6 +51,29 @@ fn a_folder_that_is_no_project_is_named_with_what_it_lacks() {
     run(here.path(), None, &["list", "--root", "nowhere"]).expect(2, &["--root", "nowhere", "ci/gates.toml"]);
 }
 
+/// What a run prints to make a finding again works in any folder, also where files were named from the folder in which it was typed.
+#[test]
+fn a_finding_is_made_again_in_any_folder() {
+    let here = tempfile::tempdir().unwrap();
+    let engine = "#!/bin/sh\nread -r line\necho '{\"status\":\"ok\",\"protocol\":1,\"engine\":\"mute\",\"version\":\"7\",\"build\":{},\"methods\":{\"id\":[\"guess\"]}}'\n\
+                  while read -r line; do echo '{\"status\":\"error\",\"reason\":\"mute\"}'; done\n";
+    std::fs::write(here.path().join("mute oracle.sh"), engine).unwrap();
+    let arguments =
+        ["run", "--suite", "smoke", "--no-timing", "--filter", "^agreement/chain-planar-2/mine/", "--engine", "mine=sh './mute oracle.sh'"];
+    let ended = run(here.path(), Some(&project()), &[&arguments[..], &["--out", "first"]].concat());
+    ended.expect(1, &["again: "]);
+    let again = ended.output.lines().find_map(|line| line.trim_start().strip_prefix("again: ")).unwrap();
+    let elsewhere = tempfile::tempdir().unwrap();
+    let shell = |line: &str| {
+        let mut command = std::process::Command::new("sh");
+        command.args(["-c", line]).current_dir(elsewhere.path()).env(VARIABLE, project()).env("NO_COLOR", "1");
+        Ended::new(command.output().unwrap())
+    };
+    let ended = shell(&format!("{again} --out second"));
+    ended.expect(1, &["mine", "mute"]);
+    assert!(elsewhere.path().join("second/rows.csv").is_file(), "{again}");
+}
+
 /// Commands on a run's folder need no project.
 #[test]
 fn what_needs_no_project_asks_for_none() {

@@ -115,7 +115,7 @@ pub struct UncertaintyArgs {
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
     /// The seed of the samples, and of the state if none is given.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = super::seed, allow_negative_numbers = true)]
     pub seed: u64,
     /// The state: a JSON file.
     #[arg(long, value_name = "FILE")]

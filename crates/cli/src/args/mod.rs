@@ -129,6 +129,11 @@ pub struct RunArgs {
     pub memory: u64,
 }
 
+/// A seed.
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
+}
+
 /// What a run asks of its suite, and who is asked.
 #[derive(Debug, Clone, Args)]
 pub struct AskedArgs {
@@ -136,7 +141,7 @@ pub struct AskedArgs {
     #[arg(long)]
     pub live: bool,
     /// The seed of all that is drawn, instead of the suite's. Answers are recorded to the suite's own: a suite that has some needs --live.
-    #[arg(long)]
+    #[arg(long, value_parser = seed, allow_negative_numbers = true)]
     pub seed: Option<u64>,
     /// The number of robots that the suite draws, instead of its own (for suites with a table `[draw]`).
     #[arg(long, value_name = "N")]
@@ -265,7 +270,7 @@ pub struct GenArgs {
     #[arg(long)]
     pub n: Option<usize>,
     /// Seed of a random family.
-    #[arg(long)]
+    #[arg(long, value_parser = seed, allow_negative_numbers = true)]
     pub seed: Option<u64>,
     /// Any other parameter, as key=value; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -318,7 +323,7 @@ pub struct ResidualsArgs {
     #[arg(long, value_name = "FILE")]
     pub state: Option<PathBuf>,
     /// The seed of the state, if none is given.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     pub seed: u64,
     /// Print JSON.
     #[arg(long)]

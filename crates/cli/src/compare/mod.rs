@@ -20,9 +20,10 @@ use featherbench_bench::run::{Opening, Run};
 use featherbench_bench::{
     Cell, Context, Engine, Engines, FileBase, FileContent, FileFormat, OWN, Robot, RobotFile, RobotSource, hash, provenance,
 };
-use featherbench_comparison::import::{answers, singular};
+use featherbench_comparison::import::{answers, overflow, singular};
 use featherbench_comparison::{Agreement, Import};
 use featherbench_engines::Limits;
+use featherbench_report::numbers::count;
 use std::path::Path;
 use std::time::{Duration, Instant, SystemTime};
 
@@ -45,7 +46,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let mut bad: Vec<Fail> = Vec::new();
     let files: Vec<Source> = args.files.iter().filter_map(|path| kept(Source::open(path, args.floating), &mut bad)).collect();
     if files.is_empty() {
-        return Err(ended(bad));
+        return Err(ended(&bad));
     }
     let gates = root.read_gates()?;
     let hash = hashes(&files);
@@ -71,13 +72,16 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
         };
         let Some((robot, about)) = kept(read, &mut bad) else { continue };
         let twice = robots.iter().filter(|known| known.name == robot.name || known.name.starts_with(&format!("{} (", robot.name)));
-        let count = twice.count();
-        let name = if count == 0 { robot.name.clone() } else { format!("{} ({})", robot.name, count + 1) };
+        let before = twice.count();
+        let name = if before == 0 { robot.name.clone() } else { format!("{} ({})", robot.name, before + 1) };
+        if let (true, Some(file)) = (before > 0, &robot.file) {
+            tell!("note: '{name}' is {}", file.path.display());
+        }
         remarks.push((name.clone(), about));
         robots.push(Robot { name, ..robot });
     }
     if robots.is_empty() {
-        return Err(ended(bad));
+        return Err(ended(&bad));
     }
 
     let started = SystemTime::now();
@@ -116,7 +120,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
         }
     }
     if !bad.is_empty() {
-        return Err(ended(bad));
+        return Err(ended(&bad));
     }
     if unmet.is_empty() {
         Ok(())
@@ -137,12 +141,9 @@ fn kept<T>(result: Result<T, Fail>, bad: &mut Vec<Fail>) -> Option<T> {
     }
 }
 
-/// The end of a comparison of which some files, or all, are bad.
-fn ended(mut bad: Vec<Fail>) -> Fail {
-    match bad.len() {
-        1 => bad.remove(0),
-        many => Fail::input(format!("{many} files cannot be compared: {}", bad.iter().map(Fail::to_string).collect::<Vec<_>>().join("; "))),
-    }
+/// The end of a comparison of which some files, or all, are bad: what is wrong with each was told before.
+fn ended(bad: &[Fail]) -> Fail {
+    Fail::input(format!("{} cannot be compared", count(bad.len(), "file")))
 }
 
 /// A robot with the remarks on its file.
@@ -208,6 +209,9 @@ fn compiled(file: RobotFile, compiler: Option<&dyn Engine>) -> Result<Read, Fail
 fn read(source: RobotSource) -> Result<Read, Fail> {
     let path = source.file.as_ref().map(|file| file.path.display().to_string()).unwrap_or_default();
     let malformed = |error: &dyn std::error::Error| Fail::input(format!("{path}: {error}"));
+    if let Some(what) = overflow(&source.description) {
+        return Err(Fail::input(format!("{path}: {what}")));
+    }
     let robot = Robot::new(&source.description, "file", source.origin, STATES, SEED).map_err(|error| malformed(&error))?;
     let remarks = source.remarks.iter().cloned().chain(singular(&robot)).collect();
     Ok((robot.with_source(&source, SEED).map_err(|error| malformed(&error))?, remarks))

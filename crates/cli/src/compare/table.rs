@@ -4,6 +4,7 @@ use crate::compare::outcome::{neutral, params};
 use ::featherbench_results::{Row, Verdict};
 use featherbench_bench::{Engine, OWN, Robot};
 use featherbench_comparison::import::{Answer, LARGEST, repairs};
+use featherbench_report::numbers::aligned;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -26,9 +27,7 @@ pub fn answers(answers: &[Answer]) -> String {
         [answer.robot.clone(), answer.engine.clone(), answer.loads.name().into(), answer.same_word().into(), change, answer.advice.clone()]
     };
     let lines: Vec<[String; 6]> = std::iter::once(HEAD.map(str::to_owned)).chain(answers.iter().map(line)).collect();
-    let widths: [usize; 6] = std::array::from_fn(|column| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0));
-    let padded = |line: &[String; 6]| line.iter().zip(widths).map(|(cell, width)| format!("{cell:<width$}")).collect::<Vec<_>>().join("  ");
-    lines.iter().map(|line| padded(line).trim_end().to_owned() + "\n").collect()
+    aligned(&lines, &[0, 1, 2, 3, 4, 5]).into_iter().map(|line| line + "\n").collect()
 }
 
 /// What each engine makes of a robot, as text.

@@ -112,6 +112,12 @@ pub fn open(root: &Root, asked: &Asked) -> Result<Opened, Fail> {
             )));
         }
     }
+    if !recorded.is_empty() && !asked.recorded.is_dir() {
+        let folder = asked.recorded.display();
+        return Err(Fail::input(format!(
+            "--recorded {folder}: there is no such folder; leave --recorded out, or ask the engines with --live"
+        )));
+    }
     let (compiled, installed): (Vec<_>, Vec<_>) = live.into_iter().partition(|engine| engine.is_compiled());
     // What cannot be built is told before anything else is started.
     for engine in compiled {

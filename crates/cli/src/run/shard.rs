@@ -36,7 +36,7 @@ pub fn evaluate(prepared: &Prepared, args: &RunArgs, shard: Shard, folder: &Path
     // A shard's journal has its processes.
     let line = [("process", json!(std::process::id())), ("time", json!(started)), ("cells", json!(ids.len())), ("kept", json!(kept))];
     journal::append(folder, line)?;
-    run.evaluate(&prepared.studies, &prepared.context(), &|cell| prepared.keeps(cell), &mine, &Bar::new())?;
+    run.evaluate(&prepared.studies, &prepared.context(), &|cell| prepared.keeps(cell), &mine, &Bar::of_run(folder))?;
     let file = ShardFile::new(shard, &run.info, args.defining(), ids).finish(folder)?;
     say!("shard {shard}: {} of {} cells, {:.1} s of work, in {}", file.cells.len(), plan.cells.len(), file.seconds, folder.display());
     say!("when all shards are there: featherbench merge DIR… --out DIR");

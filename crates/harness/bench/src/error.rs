@@ -15,6 +15,14 @@ pub enum HarnessError {
         /// The error of the operating system.
         source: io::Error,
     },
+    /// The folder of a run cannot be made.
+    #[error("{path}: the folder cannot be made: {source}; name another one with --out")]
+    NoFolder {
+        /// The folder.
+        path: PathBuf,
+        /// The error of the operating system.
+        source: io::Error,
+    },
     /// A configuration file has an error.
     #[error("{path}: {message}")]
     Config {

@@ -18,6 +18,15 @@ pub fn checksum(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }
 
+/// Why there is no run in a folder that has no checksums, finished or not.
+fn no_run(folder: &Path) -> Option<&'static str> {
+    let mut entries = match std::fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(_) => return Some("there is no such folder"),
+    };
+    entries.next().is_none().then_some("the folder is empty")
+}
+
 /// The checksum of a file, which need not fit into the memory.
 ///
 /// # Errors
@@ -79,7 +88,11 @@ impl Checksums {
     pub fn read(folder: &Path) -> Result<Self, ResultsError> {
         let path = folder.join(CHECKSUMS_NAME);
         let bytes = read_bytes(&path).map_err(|error| match error {
-            ResultsError::Io { source, path } if source.kind() == io::ErrorKind::NotFound => ResultsError::Unfinished { path },
+            ResultsError::Io { source, path } if source.kind() == io::ErrorKind::NotFound => match no_run(folder) {
+                Some(what) => ResultsError::NoRun { folder: folder.to_owned(), what },
+                None => ResultsError::Unfinished { path },
+            },
+            ResultsError::Io { .. } if folder.is_file() => ResultsError::NoRun { folder: folder.to_owned(), what: "is a file" },
             other => other,
         })?;
         let damaged = |line: usize| ResultsError::Damaged {

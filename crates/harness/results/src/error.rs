@@ -92,6 +92,14 @@ pub enum ResultsError {
         /// The file of checksums.
         path: PathBuf,
     },
+    /// There is no such folder, or it holds no run.
+    #[error("{folder}: {what}; name the folder of a run, as in reports/default-20260101-120000", folder = folder.display())]
+    NoRun {
+        /// The folder.
+        folder: PathBuf,
+        /// What it is instead.
+        what: &'static str,
+    },
     /// A `run.json` that does not parse; line and column are inside the message.
     #[error("{path}: {source}", path = path.display())]
     Json {

@@ -120,7 +120,7 @@ impl Run {
         } else if !path.is_file() {
             return Err(HarnessError::NothingToResume { path: folder.to_owned() });
         }
-        std::fs::create_dir_all(folder).map_err(io)?;
+        std::fs::create_dir_all(folder).map_err(|source| HarnessError::NoFolder { path: folder.to_owned(), source })?;
         let mut now = provenance::fingerprint(&info);
         now.extend(more);
         if opening == Opening::Resume {
