@@ -156,18 +156,18 @@ fn what_is_no_run_and_no_seed_is_told() {
     let sandbox = Sandbox::new();
     std::fs::create_dir(sandbox.path("empty")).unwrap();
     sandbox.write("file", "");
-    for command in [&["gate"][..], &["report"], &["explain", "3f"], &["reduce"], &["history"], &["export", "--parquet", "out"]] {
+    for command in [&["gate"][..], &["report"], &["explain", "3f"], &["reduce"], &["export", "--parquet", "out"]] {
         for (folder, words) in [("nowhere", "there is no such folder"), ("empty", "the folder is empty"), ("file", "")] {
             sandbox.run(&[command, &[folder]].concat()).expect(2, &[folder, words]);
         }
     }
+    sandbox.run(&["history", "empty"]).expect(2, &["empty: it is no run"]);
     sandbox.run(&["diff", "nowhere", "empty"]).expect(2, &["nowhere: there is no such folder"]);
     for seed in ["abc", "-1", "1.5", "18446744073709551616"] {
         for command in [&["run"][..], &["gen", "random_tree"], &["uncertainty", "chain:n=2"], &["residuals", "chain:n=2"]] {
             sandbox.run(&[command, &["--seed", seed]].concat()).expect(2, &[seed, "a seed is a whole number from 0 to"]);
         }
     }
-    sandbox.run(&["run", "--suite", "smoke", "--recorded", "nowhere"]).expect(2, &["--recorded nowhere: there is no such folder"]);
 }
 
 /// Programs that start within one second have a folder each.
@@ -234,9 +234,12 @@ fn damaged_recordings_cost_their_robot_and_nothing_else() {
     assert!(passing("chain-planar-2") > 50, "the other robots are compared");
     assert_eq!(passing("panda"), 0);
 
+    // A folder without recordings, and one that is not there.
     std::fs::remove_dir_all(&folder).unwrap();
+    std::fs::create_dir(&folder).unwrap();
     let ended = sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--recorded", "recorded", "--out", "none"]);
     ended.expect(1, &["engine pinocchio answers", "engine mujoco answers", "engine drake answers"]);
+    sandbox.run(&["run", "--suite", "smoke", "--recorded", "nowhere"]).expect(2, &["--recorded nowhere: there is no such folder"]);
 }
 
 #[test]

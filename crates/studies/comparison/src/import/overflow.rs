@@ -19,7 +19,7 @@ pub fn overflow(robot: &Description) -> Option<String> {
         [of_mass, of_inertia].into_iter().chain(armature).map(move |(size, words)| (size, &body.name, words))
     });
     let (size, body, words) = parts.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let beyond = !(size <= LARGEST_ENTRY);
+    let beyond = size.is_nan() || size > LARGEST_ENTRY;
     beyond.then(|| {
         format!(
             "body '{body}': {words}, and the robot reaches {reach:.3e} m: the products that its dynamics need overflow; is it another unit?"
@@ -30,12 +30,18 @@ pub fn overflow(robot: &Description) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use featherbench_model::BodyDescription;
+    use featherbench_model::{BodyDescription, JointDescription};
 
     #[test]
     fn the_largest_number_is_named() {
-        let body =
-            |name: &str, mass: f64, arm: f64| BodyDescription { name: name.into(), mass, com: [arm, 0.0, 0.0], ..Default::default() };
+        let body = |name: &str, mass: f64, arm: f64| BodyDescription {
+            name: name.into(),
+            parent: None,
+            mass,
+            com: [arm, 0.0, 0.0],
+            inertia: [0.0; 6],
+            joint: JointDescription::default(),
+        };
         let of = |bodies: Vec<BodyDescription>| overflow(&Description { bodies, ..Default::default() });
         assert_eq!(of(vec![body("a", 1.0, 0.1), body("b", 1e149, 0.5)]), None);
         assert!(of(vec![body("a", 1.0, 0.1), body("b", 1e300, 0.5)]).unwrap().starts_with("body 'b': its mass is 1e300 kg"));

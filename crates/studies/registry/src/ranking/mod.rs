@@ -80,6 +80,9 @@ pub(crate) fn engine_of(name: &str) -> &str {
     BUILDS.iter().find_map(|build| name.strip_suffix(build)).unwrap_or(name)
 }
 
+/// An engine and a quantity.
+type Asked<'a> = (&'a str, &'a str);
+
 /// The error of a method on a robot.
 struct OfRobot<'a> {
     robot: &'a str,
@@ -105,7 +108,7 @@ fn errors(rows: &[Row]) -> BTreeMap<&str, BTreeMap<String, Errors>> {
             && row.valid
             && QUANTITIES.contains(&row.quantity.as_str())
     };
-    let mut methods: BTreeMap<(&str, &str), Vec<(&str, Vec<OfRobot>)>> = BTreeMap::new();
+    let mut methods: BTreeMap<Asked, Vec<(&str, Vec<OfRobot>)>> = BTreeMap::new();
     for (row, median) in rows.iter().filter(measured).filter_map(|row| Some((row, row.value?))) {
         let known = methods.entry((&row.engine, &row.quantity)).or_default();
         let at = known.iter().position(|(method, _)| *method == row.method).unwrap_or_else(|| {
@@ -146,7 +149,8 @@ fn times(rows: &[Row]) -> BTreeMap<&str, BTreeMap<String, Times>> {
     let counts = |row: &&Row| {
         row.study == "timing" && row.cache == "stream" && row.valid && ["f64", ""].contains(&row.precision.as_str()) && row.method != BATCH
     };
-    let mut fastest: BTreeMap<(&str, &str), BTreeMap<&str, (f64, bool)>> = BTreeMap::new();
+    // By robot, with whether it is an estimate.
+    let mut fastest: BTreeMap<Asked, BTreeMap<&str, (f64, bool)>> = BTreeMap::new();
     for row in rows.iter().filter(counts) {
         // Of M, what is timed is the tree-sparse matrix.
         let timed = |quantity: &&str| row.quantity == if *quantity == "mass_matrix" { SPARSE } else { *quantity };
