@@ -50,9 +50,8 @@ impl Robot {
     /// Returns
     /// -------
     /// ndarray, shape (n,) or (states, n)
-    ///     Rad and m, for a model with this robot's order of joints, and angles of continuous joints. Pinocchio's own URDF parser sorts siblings by
-    ///     name, and gives continuous joints a cosine and a sine.
-    #[doc = text!(errors "Naming the joint for which the engine has no coordinates.")]
+    ///     Rad and m, for a model with this robot's order of joints, and angles of continuous joints.
+    #[doc = text!(errors "Naming the joint for which the engine has no coordinates, or saying why Pinocchio's own parser may give the URDF others.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q = robot.random(seed=1)
     /// >>> np.array_equal(robot.to_pinocchio(q), q)  # it has no planar joint

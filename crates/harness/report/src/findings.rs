@@ -61,7 +61,7 @@ pub struct Findings<'a> {
     pub status: Status,
     /// Verdicts of all rows.
     pub tally: Tally,
-    /// The findings, from the gravest; of one level, new ones first.
+    /// The findings: new ones first, then from the gravest.
     pub found: Vec<Found<'a>>,
 }
 
@@ -114,18 +114,11 @@ impl<'a> Findings<'a> {
             (Status::Passed, 1) => format!("the only deviation found is known, {passed}"),
             (Status::Passed, all) => format!("all {} deviations found are known, {passed}", grouped(all)),
             (Status::Failed, _) => {
-                let beyond = if rows(Verdict::Fail) == 1 { "beyond its bound" } else { "beyond their bound" };
-                let unmet =
-                    |engines: bool| self.red().filter(|found| found.worst.is_none() && engines == (found.gate == GateKind::Engine)).count();
-                let parts = [
-                    (rows(Verdict::Fail), "row", beyond),
-                    (rows(Verdict::Error), "row", "without an answer"),
-                    (unmet(true), "engine", "missing"),
-                    (unmet(false), "gate", "not met"),
-                ];
-                let failed =
-                    parts.iter().filter(|(number, ..)| *number > 0).map(|(number, noun, what)| format!("{} {what}", count(*number, noun)));
-                failed.chain([count(self.red().count(), "new finding")]).collect::<Vec<_>>().join(", ")
+                let more = match self.red().count() {
+                    0 | 1 => String::new(),
+                    all => format!("; and {}", count(all - 1, "more new finding")),
+                };
+                self.red().next().map_or_else(String::new, Found::first_words) + &more
             }
         }
     }
@@ -190,6 +183,14 @@ impl Found<'_> {
         words
     }
 
+    /// What failed, in one sentence: the same with its extent, or the condition and why it is not met.
+    fn first_words(&self) -> String {
+        match self.worst {
+            None => format!("not met: {}: {}", self.what, clipped(&self.cause)),
+            Some(_) => format!("{}, in {}", self.short(), self.extent()),
+        }
+    }
+
     /// `pinocchio, kinetic energy`: engine and quantities, as far as they are known.
     pub fn who(&self) -> String {
         let quantities = match self.quantities.len() {
@@ -233,6 +234,9 @@ impl Found<'_> {
             let relation = row.relation.map_or("", Relation::phrase);
             return format!("{}{unit} where {relation} {} is due", short(value), short(bound));
         };
+        if let Some(excess) = row.param("excess").and_then(|excess| excess.as_f64()) {
+            return format!("{}{against}", scaled(excess));
+        }
         match self.severity {
             Some(Severity::PhysicsDiffers) => format!("off by {}{against}", part(error)),
             Some(Severity::Rounding) => format!("{} times its gate of {}{against}", short(error / bound), short(bound)),
@@ -282,15 +286,15 @@ impl Found<'_> {
         format!("{}{place}{extent}{cause}", self.short())
     }
 
-    /// Level, then new before known. Of what is missing, an engine comes before its rows, and rows with their reason before their number. A
-    /// condition without a level comes last.
-    fn order(&self) -> (bool, Option<Severity>, bool, u8) {
+    /// New before known, then by level; a condition without a level comes last. Of what is missing, an engine comes before its rows, and rows
+    /// with their reason before their number.
+    fn order(&self) -> (bool, bool, Option<Severity>, u8) {
         let near = match self.gate {
             GateKind::Engine => 0,
             GateKind::Counts | GateKind::Rows => 2,
             _ => 1,
         };
-        (self.severity.is_none(), self.severity, !self.new, near)
+        (!self.new, self.severity.is_none(), self.severity, near)
     }
 
     /// What orders findings of one level: the error if the physics differs, decades beyond the gate otherwise.
@@ -312,6 +316,18 @@ fn joined<const N: usize>(words: [&str; N]) -> String {
 pub fn clipped(text: &str) -> String {
     let head: String = text.chars().take(LONGEST).collect();
     if head.len() < text.len() { format!("{head} …") } else { head }
+}
+
+/// What a constant factor does to all values, in words; `excess` is the factor less one.
+fn scaled(excess: f64) -> String {
+    let factor = 1.0 + excess;
+    match excess.abs() {
+        size if size < 0.1 => {
+            format!("all values are too {} by one part in {}", if excess > 0.0 { "large" } else { "small" }, short(1.0 / size))
+        }
+        _ if (factor + 1.0).abs() < 1e-6 => "all values have the other sign".into(),
+        _ => format!("all values are multiplied by {factor:.6}"),
+    }
 }
 
 /// A part of a whole: `78 %`, `0.24 %`, `2.4e-5`, `12 times its size`.
@@ -390,8 +406,7 @@ fn of_group<'a>(run: &RunInfo, rows: &[&'a Row]) -> Option<Found<'a>> {
 
 /// The id of the known deviation that a row names in its parameters.
 fn named_cause(row: &Row) -> Option<String> {
-    let params: serde_json::Value = serde_json::from_str(&row.params).ok()?;
-    Some(params.get("deviation")?.as_str()?.to_owned())
+    Some(row.param("deviation")?.as_str()?.to_owned())
 }
 
 /// A condition that is not met. Rows that fail or have no answer are findings of their own; so are conditions that count nothing but them.

@@ -100,7 +100,7 @@ mod tests {
         assert_eq!(
             told,
             [
-                "failed: 1 row beyond its bound, 1 new finding",
+                "failed: drake, bias force h: 2 times its gate of 1e-14 against truth, in 1 row on 1 robot",
                 "  1. rounding, new: drake, bias force h: 2 times its gate of 1e-14 against truth (panda, fast, aba); 1 row on 1 robot; far (too) from it",
                 "  2. physics differs, known: dart, kinetic energy: off by 78 % against truth (panda, fast, aba); 2 rows on 1 robot; far (too) from it",
                 "  3. method loses digits, known: mujoco, inverse dynamics: 5.0 digits lost beyond rounding against truth (1e-9 where 1e-14 is allowed) \
@@ -141,10 +141,7 @@ mod tests {
         let rows = [row("drake", "bias", Verdict::Fail, 2e-14), row("drake", "bias", Verdict::Fail, 3e-14), silent];
         let section = Section { lines: vec!["how fast".into()], ..Section::new("more", "More", maud::html! {}) };
         let lines = summary(&run, &rows, &[section]);
-        assert_eq!(
-            lines[0],
-            "failed: 2 rows beyond their bound, 1 row without an answer, 1 engine missing, 1 gate not met, 4 new findings"
-        );
+        assert_eq!(lines[0], "failed: not met: engine drake answers: there is none; and 3 more new findings");
         let end = &lines[lines.len() - 3..];
         let unmet = ["  gate not met, engine: engine drake answers: there is none", "  gate not met, counts: cells of id: there is none"];
         assert_eq!(end, [unmet[0], unmet[1], "how fast"]);

@@ -44,7 +44,8 @@ fn body(
     html! {
         section #verdict class={ "verdict " (class) } {
             p.stamp { span.glyph aria-hidden="true" { (match findings.status { Status::Passed => "✓", Status::Failed => "✕", Status::Empty => "·" }) } (word) }
-            h1 { (capitalised(&findings.meaning())) }
+            // What failed begins with an engine's name, which stays as it is.
+            h1 { @if findings.status == Status::Failed { (findings.meaning()) } @else { (capitalised(&findings.meaning())) } }
             // Who is right, by how much and how fast; of a run that failed, what failed comes first.
             @let lead = || html! { @for lead in sections.iter().filter_map(|section| section.lead.as_ref()) { (lead.body) } };
             @if findings.status != Status::Failed { (lead()) }
@@ -135,7 +136,7 @@ fn closest(overview: &Overview, rows: &[Row]) -> Markup {
 fn tally_cells(tally: &Tally) -> Markup {
     html! {
         @for verdict in [Verdict::Pass, Verdict::Fail, Verdict::Error, Verdict::Deviation, Verdict::Skip] {
-            td.number class={ (verdict) @if tally.get(verdict) == 0 { " none" } } { (grouped(tally.get(verdict))) }
+            td class={ "number " (verdict) @if tally.get(verdict) == 0 { " none" } } { (grouped(tally.get(verdict))) }
         }
     }
 }

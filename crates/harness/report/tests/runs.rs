@@ -52,7 +52,7 @@ fn runs_of_a_suite_are_compared_in_the_order_of_their_start() {
     }
     assert!(last.find("Findings that appeared").unwrap() < last.find("Findings that vanished").unwrap());
     assert!(part("<h2>2026-03-02, suite dock").contains("nothing to compare with"), "another suite is not compared");
-    assert!(page.contains("<h1>3 runs, the last: 1 row beyond its bound"), "{page}");
+    assert!(page.contains("<h1>3 runs, the last: dart, centre of mass: 4.0 digits lost"), "{page}");
     // The same finding of another size is the same finding.
     let page = render(vec![past(1, "yard", "1", known()), past(2, "yard", "1", off("drake", "id", 0.1).deviating("a sign"))]);
     assert!(page.contains("0 findings appeared, 0 vanished, 1 error, of 1 row compared"), "{page}");

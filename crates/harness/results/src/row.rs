@@ -1,6 +1,8 @@
 //! How a row is closed and judged.
 
-use crate::{Relation, Row, Verdict};
+use serde_json::Value;
+
+use crate::{Relation, Row, Verdict, canonical_json};
 
 /// Margins are limited to this many decades: the margin of an exact zero is this, and not infinite.
 pub const MARGIN_LIMIT: f64 = 16.0;
@@ -9,6 +11,30 @@ pub const MARGIN_LIMIT: f64 = 16.0;
 pub const RATIO: &str = "ratio";
 
 impl Row {
+    /// A parameter that the column `params` has.
+    ///
+    /// ```
+    /// use featherbench_results::Row;
+    ///
+    /// let row = Row { params: r#"{"states":20}"#.into(), ..Row::default() }.with_param("excess", 1e-9.into());
+    /// assert_eq!((row.param("excess"), row.params.as_str()), (Some(1e-9.into()), r#"{"excess":1e-9,"states":20}"#));
+    /// assert_eq!(row.param("nothing"), None);
+    /// ```
+    pub fn param(&self, name: &str) -> Option<Value> {
+        let params: Value = serde_json::from_str(&self.params).ok()?;
+        params.get(name).cloned()
+    }
+
+    /// The row with a parameter more. A row whose parameters are no object stays.
+    #[must_use]
+    pub fn with_param(mut self, name: &str, value: Value) -> Self {
+        if let Ok(Value::Object(mut params)) = serde_json::from_str(&self.params) {
+            params.insert(name.into(), value);
+            self.params = canonical_json(&Value::Object(params));
+        }
+        self
+    }
+
     /// Closes the row with a value that is judged: a pass or a failure with its margin.
     ///
     /// A value or a bound that is not finite makes the row an error with that reason; the value is then absent.

@@ -18,8 +18,10 @@ impl Robot {
     /// ```
     ///
     /// # Errors
-    /// [`Error::NoCoordinates`] when the engine does not have a joint of this robot.
+    /// [`Error::NoCoordinates`] when the engine does not have a joint of this robot; [`Error::OtherCoordinates`] when the robot is of a URDF to
+    /// which Pinocchio's own parser may give other coordinates.
     pub fn nq_of(&self, convention: Convention) -> Result<usize, Error> {
+        self.check_parser(convention)?;
         self.joints().iter().map(|joint| convention.check(joint).map(|()| convention.nq(joint))).sum()
     }
 
@@ -271,6 +273,14 @@ impl Robot {
         self.each_v(convention, q, ("the engine's tau", theirs), |_, turn, theirs, tau| turn.undo(theirs, tau))
     }
 
+    /// An error, if the engine's own parser may give the robot's file other coordinates.
+    fn check_parser(&self, convention: Convention) -> Result<(), Error> {
+        match &self.inner.otherwise {
+            Some(reason) if convention == Convention::Pinocchio => Err(Error::OtherCoordinates { reason: reason.clone() }),
+            _ => Ok(()),
+        }
+    }
+
     /// Calls `convert` with each joint and the place of its numbers in the engine's q.
     fn each_q(&self, convention: Convention, mut convert: impl FnMut(&Joint, Range<usize>)) {
         let mut at = 0;
@@ -289,6 +299,7 @@ impl Robot {
         (argument, x): (&'static str, &[f64]),
         mut convert: impl FnMut(&Joint, &Turn, &[f64], &mut [f64]),
     ) -> Result<Vec<f64>, Error> {
+        self.check_parser(convention)?;
         self.check_q("q", q)?;
         check(argument, self.nv(), x)?;
         let mut result = vec![0.0; self.nv()];

@@ -55,6 +55,7 @@ mod configuration;
 mod convention;
 mod coordinates;
 mod error;
+mod pinocchio;
 mod quantities;
 mod reading;
 mod robot;

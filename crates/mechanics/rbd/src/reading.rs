@@ -1,6 +1,6 @@
 //! Where robots come from: files, texts, descriptions and families.
 
-use crate::{Error, Robot};
+use crate::{Error, Robot, pinocchio};
 use featherbench_formats::urdf::{self, Base, Options};
 use featherbench_formats::{mjcf, neutral};
 use featherbench_model::Description;
@@ -23,7 +23,7 @@ impl Robot {
     /// ```
     pub fn from_urdf(path: impl AsRef<Path>) -> Result<Self, Error> {
         let (description, notes) = urdf::read(path, &with_base(Base::Fixed))?;
-        Self::noted(&description, &notes)
+        Self::read(&description, &notes, pinocchio::otherwise)
     }
 
     /// The same with a free joint, `root_joint`, between the world and the root link.
@@ -36,7 +36,7 @@ impl Robot {
     /// ```
     pub fn from_urdf_floating(path: impl AsRef<Path>) -> Result<Self, Error> {
         let (description, notes) = urdf::read(path, &with_base(Base::Floating))?;
-        Self::noted(&description, &notes)
+        Self::read(&description, &notes, pinocchio::otherwise)
     }
 
     /// Reads URDF from a text; `name` stands for the file in errors.
@@ -57,7 +57,7 @@ impl Robot {
     pub fn from_urdf_text(text: &str, name: &str, floating: bool) -> Result<Self, Error> {
         let base = if floating { Base::Floating } else { Base::Fixed };
         let (description, notes) = urdf::import(text, name, &with_base(base))?;
-        Self::noted(&description, &notes)
+        Self::read(&description, &notes, pinocchio::otherwise)
     }
 
     /// Reads a neutral description file (`datasets/models/FORMAT.md`), which `featherbench gen` writes from URDF and MJCF.

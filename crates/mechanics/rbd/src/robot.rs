@@ -42,6 +42,8 @@ pub(crate) struct Inner {
     /// Where quaternions begin in q, and the place of their joint in `joints`.
     pub(crate) quaternions: Vec<(usize, usize)>,
     notes: Vec<String>,
+    /// Why Pinocchio's own parser may give the same file other coordinates.
+    pub(crate) otherwise: Option<String>,
 }
 
 /// A joint: its kind, and its numbers in q and v.
@@ -106,6 +108,15 @@ impl Frame {
 impl Robot {
     /// The robot of a description, with what its reader left out.
     pub(crate) fn noted(description: &Description, notes: &[impl ToString]) -> Result<Self, Error> {
+        Self::read(description, notes, |_| None)
+    }
+
+    /// The same of a file; `otherwise` says why Pinocchio's own parser may give its joints other coordinates.
+    pub(crate) fn read(
+        description: &Description,
+        notes: &[impl ToString],
+        otherwise: impl FnOnce(&[Joint]) -> Option<String>,
+    ) -> Result<Self, Error> {
         let model = Model::build(description)?;
         let description = description.canonical()?;
         let (mut q, mut v) = (0, 0);
@@ -141,7 +152,8 @@ impl Robot {
         let packed = PackedModel::new(&model);
         let warnings = model.warnings.iter().map(ToString::to_string);
         let notes = notes.iter().map(ToString::to_string).chain(warnings).collect();
-        Ok(Self { inner: Arc::new(Inner { description, model, packed, joints, frames, quaternions, notes }) })
+        let otherwise = otherwise(&joints);
+        Ok(Self { inner: Arc::new(Inner { description, model, packed, joints, frames, quaternions, notes, otherwise }) })
     }
 
     /// The robot's name.

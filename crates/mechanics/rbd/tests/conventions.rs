@@ -176,3 +176,43 @@ fn rotate([w, x, y, z]: [f64; 4], [a, b, c]: [f64; 3]) -> [f64; 3] {
     let [_, x, y, z] = product(product([w, x, y, z], [0.0, a, b, c]), [w, -x, -y, -z]);
     [x, y, z]
 }
+
+/// Pinocchio's own parser sorts siblings and gives continuous joints two numbers: where it can, nothing is converted. A chain of limited joints,
+/// and a robot that no URDF is of, are.
+#[test]
+fn a_urdf_that_pinocchio_reads_otherwise_is_not_converted() {
+    let link = |name: &str| {
+        let inertial = r#"<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>"#;
+        format!("<link name=\"{name}\">{inertial}</link>")
+    };
+    let joint = |name: &str, kind: &str, parent: &str, child: &str| {
+        let limit = if kind == "continuous" { "" } else { r#"<limit lower="-1" upper="1" effort="1" velocity="1"/>"# };
+        format!(
+            "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{child}\"/><axis xyz=\"0 0 1\"/>{limit}</joint>"
+        )
+    };
+    let robot = |joints: [String; 2]| {
+        let text = format!("<robot name=\"r\"><link name=\"world\"/>{}{}{}</robot>", link("a"), link("b"), joints.concat());
+        Robot::from_urdf_text(&text, "r.urdf", false).unwrap()
+    };
+    let chain = |kind: &str| robot([joint("first", kind, "world", "a"), joint("second", "revolute", "a", "b")]);
+    let fork = robot([joint("left", "revolute", "world", "a"), joint("right", "prismatic", "world", "b")]);
+    for (robot, words) in [(chain("continuous"), "'first' a cosine and a sine"), (fork, "'left' and 'right'")] {
+        let (q, v) = (robot.neutral(), vec![0.0; robot.nv()]);
+        let refused = [
+            robot.to_pinocchio(&q),
+            robot.from_pinocchio(&q),
+            robot.velocity_to(Convention::Pinocchio, &q, &v),
+            robot.acceleration_from(Convention::Pinocchio, &q, &v, &v),
+            robot.force_to(Convention::Pinocchio, &q, &v),
+        ];
+        for refused in refused {
+            assert!(refused.unwrap_err().to_string().contains(words));
+        }
+        assert_eq!(robot.to_drake(&q).unwrap(), q, "other parsers keep the order");
+        let described = Robot::from_description(robot.description()).unwrap();
+        assert_eq!(described.to_pinocchio(&q).unwrap(), q, "a model with this order of joints");
+    }
+    let robot = chain("revolute");
+    assert_eq!(robot.to_pinocchio(&robot.neutral()).unwrap(), robot.neutral());
+}

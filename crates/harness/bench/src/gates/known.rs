@@ -3,7 +3,6 @@
 use crate::measure::worst;
 use crate::{Deviation, DeviationFile, HarnessError, Lack, RangeKey, Ranges, Reproduction, Suite};
 use featherbench_results::{Culprit, Expectation, GateKind, Properties, Row, Verdict};
-use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -221,12 +220,7 @@ impl Known {
 
 /// A row with a known deviation as its cause: the parameters name it.
 fn deviating(row: Row, known: &Deviation) -> Row {
-    let mut row = row.deviating(&known.reason);
-    if let Ok(Value::Object(mut params)) = serde_json::from_str(&row.params) {
-        params.insert(PARAMETER.into(), known.id.as_str().into());
-        row.params = featherbench_results::canonical_json(&Value::Object(params));
-    }
-    row
+    row.deviating(&known.reason).with_param(PARAMETER, known.id.as_str().into())
 }
 
 /// The id of the deviation that explains a row; `None` if none does.
@@ -242,6 +236,5 @@ pub fn cause(row: &Row) -> Option<String> {
     if row.verdict != Verdict::Deviation {
         return None;
     }
-    let params: Value = serde_json::from_str(&row.params).ok()?;
-    Some(params.get(PARAMETER)?.as_str()?.to_owned())
+    Some(row.param(PARAMETER)?.as_str()?.to_owned())
 }

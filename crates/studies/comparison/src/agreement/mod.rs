@@ -3,6 +3,7 @@
 //! The reference is our f64, and each row says so; the accuracy study compares with the truth instead. Rows with another engine as
 //! `reference` compare engines with each other. So a reader can see which engine differs from all others.
 
+mod factor;
 mod over_best;
 pub(crate) mod section;
 pub(crate) mod words;
@@ -171,7 +172,13 @@ impl Comparison<'_> {
             _ if quantity == Quantity::Readback => self.errors(quantity, &self.robot.readback(), values),
             _ => return vec![row(cell, self.robot).without_value(Verdict::Error, "our reference has no value")],
         };
-        self.judged(cell, "scaled", &errors, None)
+        let rows = self.judged(cell, "scaled", &errors, None);
+        let wrong = rows.iter().any(|row| row.verdict == Verdict::Fail);
+        let reference = self.reference(quantity).and_then(|(_, outcome)| outcome.values());
+        match reference.filter(|_| wrong).and_then(|reference| factor::excess(reference, values, quantity.size(self.robot))) {
+            Some(excess) => rows.into_iter().map(|row| row.with_param("excess", excess.into())).collect(),
+            None => rows,
+        }
     }
 
     /// Backward error by our inverse dynamics, and forward error in the kinetic-energy norm.

@@ -17,6 +17,7 @@ pub(crate) const WORDS: Words = Words {
         ("base", "how the first body is attached: fixed or free"),
         ("joints", "the kinds of the robot's joints, sorted"),
         ("states", "the number of states that were asked"),
+        ("excess", "of answers beyond their bound: how much larger all values are, if one factor explains all states; the factor less one"),
         ("ours", "our error"),
         ("best", "the error of the best other engine"),
         ("by", "the method of the best other engine"),
