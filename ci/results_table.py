@@ -5,9 +5,9 @@ ci/results_table.py                 fails if README has another table than resul
 ci/results_table.py --check FILE    fails too if the ranking FILE has other numbers beyond noise
 ci/results_table.py FILE            writes FILE into results.json, and the table into README
 
-FILE is what `featherbench report RUN --json` prints of a finished run of the default suite; crates/studies/registry/src/ranking says what each
-number is. `ci/published` calls this. Errors are the same within the noise of ci/figures.py; counts of known deviations within the same factor,
-where less than four counts as four. Times depend on the machine, and are not compared.
+FILE is what `featherbench report RUN --json` prints of a finished run of the default suite; crates/studies/registry/src/ranking says what
+each number is. `ci/published` calls this. Errors are the same within the noise of ci/figures.py; counts of known deviations within the same
+factor, where less than four counts as four. Times depend on the machine, and are not compared.
 """
 
 from __future__ import annotations
@@ -96,11 +96,11 @@ def error_cells(engine: Engine, quantity: str) -> list[str]:
 
 def time_cell(engine: Engine, quantity: str) -> str:
     """Return the cell of a time."""
+    if engine["name"] == OURS:
+        return "1"
     times = engine["times"].get(quantity)
     if times is None:
         return NONE
-    if engine["name"] == OURS:
-        return "1"
     return f"{'≈ ' if times['estimated'] else ''}{short(times['median'])} ({short(times['least'])} to {short(times['most'])})"
 
 
@@ -115,7 +115,8 @@ def right_cell(engine: Engine) -> str:
 
 def lines(ranking: Ranking) -> Iterator[str]:
     """Return the table, and what it means."""
-    heads = ["engine", "right", "FD error", "worst, on", "ID error", "M error", *(f"time {of}" for of in QUANTITIES.values()), "gravest finding"]
+    times_of = [f"time {of}" for of in QUANTITIES.values()]
+    heads = ["engine", "right", "FD error", "worst, on", "ID error", "M error", *times_of, "gravest finding"]
     yield f"| {' | '.join(heads)} |"
     yield f"|---|---|{'---:|' * (len(heads) - 3)}---|"
     for engine in ranking["engines"]:
@@ -125,17 +126,17 @@ def lines(ranking: Ranking) -> Iterator[str]:
         yield f"| {' | '.join([name, right_cell(engine), *errors, *times, engine['gravest'] or NONE])} |"
     of_errors = [errors for engine in ranking["engines"] for errors in engine["errors"].values()]
     of_times = [times for engine in ranking["engines"] if engine["name"] != OURS for times in engine["times"].values()]
+    robots, states = (max((errors[key] for errors in of_errors), default=0) for key in ("robots", "states"))
+    timed, machines = (max((times[key] for times in of_times), default=0) for key in ("robots", "machines"))
     errors_are = (
         "*Right*: the share of answers within their bound, of all questions that have one "
-        f"({ranking['suite']} suite, {ranking['started'][:10]}). *Errors* of forward dynamics (FD), inverse dynamics (ID) and the mass matrix (M) are "
-        f"those of the engine's usual method against the truth in 32 digits, in units of 2⁻⁵². Each is the median over "
-        f"{max((errors['robots'] for errors in of_errors), default=0)} robots at {max((errors['states'] for errors in of_errors), default=0)} "
-        "states; the worst is the robot with the largest error."
+        f"({ranking['suite']} suite, {ranking['started'][:10]}). *Errors* of forward dynamics (FD), inverse dynamics (ID) and the mass "
+        "matrix (M) are those of the engine's usual method against the truth in 32 digits, in units of 2⁻⁵². Each is the median over "
+        f"up to {robots} robots at {states} states; the worst is the robot with the largest error."
     )
     times_are = (
-        f"*Times* are those of the engine's fastest method over ours. Each is the median over up to {max(times['robots'] for times in of_times)} "
-        f"robots, with the least and the most, recorded on {max(times['machines'] for times in of_times)} machines (`datasets/speed`). An estimate, "
-        "through Python, has the mark ≈."
+        f"*Times* are those of the engine's fastest method over ours. Each is the median over up to {timed} robots, with the least and the "
+        f"most, recorded on {machines} machines (`datasets/speed`). An estimate, through Python, has the mark ≈."
         if of_times
         else f"*Times* are those of the engine's fastest method over ours. Without a ratio that counts there is a dash ({NONE})."
     )
