@@ -22,10 +22,13 @@ NOTHING = """
       line.textContent = 'Nothing.';
       section.insertBefore(line, section.lastElementChild);
     }"""
+# What compareDocumentPosition says of an element behind another one.
+FOLLOWING = 4
 BACKGROUND = "return getComputedStyle(document.body).backgroundColor"
 # Every section in its order, study by study. Those that are not in ALWAYS appear only if they have rows.
 SECTIONS = [
     "verdict",
+    "engines",
     "agreement",
     "depth",
     "pairs",
@@ -156,18 +159,24 @@ def paper(page: Browser, address: str) -> Checks:
 
 def findings(page: Browser) -> Checks:
     """Check the findings on the first page: their order, their rows, the command that repeats them."""
-    listed = page.run(
-        "return [...document.querySelectorAll('#verdict ol.findings .level')].map(level => level.textContent.split(',')[0].trim())"
-    )
-    known = [level for level in listed if level in LEVELS]
-    places = [LEVELS.index(level) for level in known]
-    yield "findings stand from the gravest", len(known) == len(listed) and places == sorted(places), listed
+    listed = page.run("return [...document.querySelectorAll('#verdict ol.findings .level')].map(level => level.textContent.trim())")
+    told = [(not level.endswith(", new"), level.removesuffix(", new")) for level in listed]
+    places = [(known, LEVELS.index(level)) for known, level in told if level in LEVELS]
+    yield "new findings stand first, then from the gravest", len(places) == len(listed) and places == sorted(places), listed
     said = page.run("return [document.querySelector('h1').textContent, document.querySelectorAll('#verdict .tile').length]")
+    failed = has(page, "#verdict.bad")
     yield (
-        "the page opens with the verdict in numbers, not with one of its findings",
-        re.search("finding|deviation|none with a bound", said[0]) and "off by" not in said[0] and said[1] == len(LEVELS) - 1,
+        "a passed run opens with the verdict in numbers, a failed one with what failed",
+        (": " in said[0] if failed else re.search("deviation|none with a bound", said[0]) and "off by" not in said[0])
+        and said[1] == len(LEVELS) - 1,
         said,
     )
+    if has(page, "#ranking"):
+        above = "document.querySelector('#ranking').compareDocumentPosition(document.querySelector('#verdict .tiles'))"
+        first = bool(page.run(f"return {above}") & FOLLOWING)
+        yield "the ranking of the engines stands above the findings of a passed run", first != failed, first
+        cut = page.run("const box = document.querySelector('.of-ranking'); return box.scrollWidth - box.clientWidth")
+        yield "no column of the ranking is cut", cut <= 0, cut
     if has(page, "#verdict ol.findings [data-chunk]"):
         page.click("#verdict ol.findings [data-chunk]")
         yield "the rows of a finding can be opened", page.until(ROWS) > 0, ""
