@@ -129,10 +129,10 @@ def lines(ranking: Ranking) -> Iterator[str]:
     robots, states = (max((errors[key] for errors in of_errors), default=0) for key in ("robots", "states"))
     timed, machines = (max((times[key] for times in of_times), default=0) for key in ("robots", "machines"))
     errors_are = (
-        "*Right*: the share of answers within their bound, of all questions that have one "
-        f"({ranking['suite']} suite, {ranking['started'][:10]}). *Errors* of forward dynamics (FD), inverse dynamics (ID) and the mass "
-        "matrix (M) are those of the engine's usual method against the truth in 32 digits, in units of 2⁻⁵². Each is the median over "
-        f"up to {robots} robots at {states} states; the worst is the robot with the largest error."
+        f"The suite is {ranking['suite']}, the day {ranking['started'][:10]}. *Right* is the share of answers within their bound. "
+        "FD is forward dynamics, ID inverse dynamics, M the mass matrix. *Errors* are those of the engine's usual method against the "
+        f"truth in 32 digits, in units of 2⁻⁵². Each is the median over up to {robots} robots at {states} states. "
+        "The worst is that of the robot with the largest error."
     )
     times_are = (
         f"*Times* are those of the engine's fastest method over ours. Each is the median over up to {timed} robots, with the least and the "

@@ -85,9 +85,9 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     }
 
     let started = SystemTime::now();
-    let folder = run::folder(root, args.out.as_deref(), NAME, started)?;
     let about = About { suite: NAME, hash: &hash, seed: SEED, live: true, robots: &robots };
     let info = run::describe(root, provenance::collect(root.path()), &about, &opened, started)?;
+    let folder = run::folder(root, args.out.as_deref(), NAME, started)?;
     run::tell_notes(&info);
     let mut run = Run::open(&folder, Opening::New, info)?;
     run.info.seconds.insert("setup".into(), start.elapsed().as_secs_f64());

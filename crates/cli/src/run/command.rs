@@ -4,12 +4,11 @@ use crate::root::Root;
 use ::featherbench_results::{quoted, words};
 use std::path::Path;
 
-/// This command, as it was typed.
-///
-/// In the project's folder it is as it was typed. Below it, files that it names are written with their whole path. Elsewhere cargo does not
+/// This command. In the project's folder it is as it was typed. Below it, files that it names are written with their whole path. Elsewhere cargo does not
 /// find the project: there this program is written with its whole path, too.
 pub fn typed(root: &Root) -> String {
-    let typed = std::env::args().skip(1);
+    // An argument may be no Unicode, as a file's name can be.
+    let typed = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
     let (Ok(here), Ok(home)) = (std::env::current_dir().and_then(|here| here.canonicalize()), root.path().canonicalize()) else {
         return line(CARGO, typed);
     };

@@ -143,8 +143,8 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
         prepared.check_filter(args)?;
     }
     let started = SystemTime::now();
-    let folder = folder(root, args.out.as_deref(), &prepared.loaded.name, started)?;
     let info = prepared.describe(root, args, started)?;
+    let folder = folder(root, args.out.as_deref(), &prepared.loaded.name, started)?;
     tell_notes(&info);
     if let Some(shard) = args.shard {
         return shard::evaluate(&prepared, args, shard, &folder, info);
@@ -176,7 +176,7 @@ pub fn folder(root: &Root, out: Option<&Path>, suite: &str, started: SystemTime)
         return Ok(out.to_owned());
     }
     let reports = root.reports();
-    let io = |source| HarnessError::io(&reports, source);
+    let io = |source| HarnessError::NoFolder { path: reports.clone(), source };
     let stamp: String = humantime::format_rfc3339_seconds(started).to_string().chars().filter(|c| !":-Z".contains(*c)).collect();
     let name = format!("{suite}-{}", stamp.replace('T', "-"));
     std::fs::create_dir_all(&reports).map_err(io)?;

@@ -143,9 +143,9 @@ fn open(root: &Root, args: &SweepArgs, whole: &RunArgs) -> Result<(PathBuf, Swee
     }
     let prepared = run::prepare(root, whole)?;
     prepared.check_filter(whole)?;
-    let folder = run::folder(root, args.out.as_deref(), &prepared.loaded.name, SystemTime::now())?;
     let plan = shard::plan(&prepared, whole)?;
     let sweep = Sweep::new(arguments, &plan, args.task_seconds);
+    let folder = run::folder(root, args.out.as_deref(), &prepared.loaded.name, SystemTime::now())?;
     let io = |source| HarnessError::io(&folder, source);
     if folder.exists() && std::fs::read_dir(&folder).map_err(io)?.next().is_some() {
         return Err(HarnessError::Occupied { path: folder }.into());

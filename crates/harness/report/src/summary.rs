@@ -32,8 +32,7 @@ pub fn summary(run: &RunInfo, rows: &[Row], sections: &[Section]) -> Vec<String>
     if !failed {
         lines.extend(lead());
     }
-    let (new, known): (Vec<_>, Vec<_>) = findings.found.iter().partition(|found| found.new);
-    for (index, found) in new.into_iter().chain(known).take(TOLD).enumerate() {
+    for (index, found) in findings.found.iter().take(TOLD).enumerate() {
         lines.push(format!("  {}. {}", index + 1, found.marked()));
         if !found.again.is_empty() {
             lines.push(format!("     again: {}", found.again));

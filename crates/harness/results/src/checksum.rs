@@ -20,10 +20,10 @@ pub fn checksum(bytes: &[u8]) -> String {
 
 /// Why there is no run in a folder that has no checksums, finished or not.
 fn no_run(folder: &Path) -> Option<&'static str> {
-    let mut entries = match std::fs::read_dir(folder) {
-        Ok(entries) => entries,
-        Err(_) => return Some("there is no such folder"),
-    };
+    if !folder.exists() {
+        return Some("there is no such folder");
+    }
+    let mut entries = std::fs::read_dir(folder).ok()?;
     entries.next().is_none().then_some("the folder is empty")
 }
 
@@ -92,7 +92,7 @@ impl Checksums {
                 Some(what) => ResultsError::NoRun { folder: folder.to_owned(), what },
                 None => ResultsError::Unfinished { path },
             },
-            ResultsError::Io { .. } if folder.is_file() => ResultsError::NoRun { folder: folder.to_owned(), what: "is a file" },
+            ResultsError::Io { .. } if folder.is_file() => ResultsError::NoRun { folder: folder.to_owned(), what: "it is a file" },
             other => other,
         })?;
         let damaged = |line: usize| ResultsError::Damaged {

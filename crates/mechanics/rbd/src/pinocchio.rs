@@ -2,6 +2,7 @@
 
 use crate::robot::Joint;
 use featherbench_model::JointType;
+use std::collections::HashMap;
 
 /// Why that parser may give the joints of a URDF other numbers, or another order; `None` if it cannot.
 ///
@@ -14,8 +15,7 @@ pub(crate) fn otherwise(joints: &[Joint]) -> Option<String> {
     if let Some(joint) = joints.iter().find(unlimited) {
         return Some(format!("it gives the continuous joint '{}' a cosine and a sine in place of an angle", joint.name));
     }
-    let mut pairs =
-        joints.iter().enumerate().filter_map(|(i, joint)| Some((joints[..i].iter().find(|before| before.parent == joint.parent)?, joint)));
-    let (before, joint) = pairs.next()?;
+    let mut first = HashMap::new();
+    let (before, joint) = joints.iter().find_map(|joint| Some((first.insert(&joint.parent, joint)?, joint)))?;
     Some(format!("it sorts siblings by the names of their joints, and '{}' and '{}' are such", before.name, joint.name))
 }

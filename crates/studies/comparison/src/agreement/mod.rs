@@ -176,7 +176,10 @@ impl Comparison<'_> {
         let wrong = rows.iter().any(|row| row.verdict == Verdict::Fail);
         let reference = self.reference(quantity).and_then(|(_, outcome)| outcome.values());
         match reference.filter(|_| wrong).and_then(|reference| factor::excess(reference, values, quantity.size(self.robot))) {
-            Some(excess) => rows.into_iter().map(|row| row.with_param("excess", excess.into())).collect(),
+            Some(excess) => {
+                let told = |row: Row| if row.verdict == Verdict::Fail { row.with_param("excess", excess.into()) } else { row };
+                rows.into_iter().map(told).collect()
+            }
             None => rows,
         }
     }

@@ -14,15 +14,14 @@ mod section;
 use featherbench_bench::statistics::quantile_of;
 use featherbench_bench::{BATCH, OWN};
 use featherbench_report::numbers::{larger, smaller};
-use featherbench_report::{EVERYONE, Findings};
+use featherbench_report::{EVERYONE, Findings, Tally};
 use featherbench_results::{Errors, Ranked, Ranking, Row, RunInfo, Times, Verdict};
-use serde::Deserialize;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 pub(crate) use section::section;
 
-/// Quantities with errors and times, by which engines are ranked: the last decides.
-pub(crate) const QUANTITIES: [&str; 3] = ["id", "mass_matrix", "fd"];
+/// Quantities with errors and times. Engines are ranked by the first of which one has errors.
+const QUANTITIES: [&str; 3] = ["fd", "id", "mass_matrix"];
 /// M as a tree-sparse matrix.
 const SPARSE: &str = "mass_matrix_sparse";
 /// What a build of an engine has after the engine's name.
@@ -49,8 +48,8 @@ pub fn ranking(run: &RunInfo, rows: &[Row]) -> Ranking {
                 own.insert(quantity.to_owned(), times);
             }
         }
-        let of = |verdict: Verdict| rows.iter().filter(|row| engine_of(&row.engine) == name && row.verdict == verdict).count();
-        let [right, known, fail, error] = [Verdict::Pass, Verdict::Deviation, Verdict::Fail, Verdict::Error].map(of);
+        let tally = Tally::of(rows.iter().filter(|row| engine_of(&row.engine) == name).map(|row| row.verdict));
+        let (right, known) = (tally.get(Verdict::Pass), tally.get(Verdict::Deviation));
         let gravest = findings.of_engine(name).map(|found| match found.quantities.first() {
             Some(first) => format!("{}: {first}", found.level()),
             None => found.level().to_owned(),
@@ -58,7 +57,7 @@ pub fn ranking(run: &RunInfo, rows: &[Row]) -> Ranking {
         Ranked {
             name: name.to_owned(),
             version: version.to_owned(),
-            asked: right + known + fail + error,
+            asked: right + known + tally.broken(),
             right,
             known,
             errors: errors.remove(name).unwrap_or_default(),
@@ -68,15 +67,14 @@ pub fn ranking(run: &RunInfo, rows: &[Row]) -> Ranking {
     };
     let mut engines: Vec<Ranked> = versions.into_iter().map(ranked).collect();
     engines.retain(|engine| engine.asked > 0 || !engine.times.is_empty());
-    let deciding = |engine: &Ranked| {
-        QUANTITIES.iter().rev().find_map(|&quantity| engine.errors.get(quantity)).map_or(f64::INFINITY, |errors| errors.worst)
-    };
+    let deciding =
+        |engine: &Ranked| QUANTITIES.iter().find_map(|&quantity| engine.errors.get(quantity)).map_or(f64::INFINITY, |errors| errors.worst);
     engines.sort_by(|a, b| deciding(a).total_cmp(&deciding(b)).then_with(|| a.name.cmp(&b.name)));
     Ranking { suite: run.suite.clone(), started: run.started.clone(), machine: run.host.cpu.clone(), engines }
 }
 
 /// The engine of which this one is a build, or itself.
-pub(crate) fn engine_of(name: &str) -> &str {
+fn engine_of(name: &str) -> &str {
     BUILDS.iter().find_map(|build| name.strip_suffix(build)).unwrap_or(name)
 }
 
@@ -89,13 +87,6 @@ struct OfRobot<'a> {
     states: usize,
     median: f64,
     bound: Option<f64>,
-}
-
-/// What is read of a row's parameters.
-#[derive(Default, Deserialize)]
-#[serde(default)]
-struct Params {
-    states: usize,
 }
 
 /// The errors of each engine's usual method, by quantity.
@@ -115,7 +106,7 @@ fn errors(rows: &[Row]) -> BTreeMap<&str, BTreeMap<String, Errors>> {
             known.push((&row.method, Vec::new()));
             known.len() - 1
         });
-        let Params { states } = serde_json::from_str(&row.params).unwrap_or_default();
+        let states = row.param("states").and_then(|states| states.as_u64()).unwrap_or(0) as usize;
         known[at].1.push(OfRobot { robot: &row.robot, states, median, bound: row.floor });
     }
     let mut found: BTreeMap<&str, BTreeMap<String, Errors>> = BTreeMap::new();
@@ -186,19 +177,19 @@ fn times(rows: &[Row]) -> BTreeMap<&str, BTreeMap<String, Times>> {
 
 /// The times that other machines recorded: over the machines the median, and over all their robots the least and the most.
 fn recorded(run: &RunInfo, engine: &str, quantity: &str) -> Option<Times> {
-    let of_machine = |ranking: &'_ Ranking| {
+    let of_machine = |ranking: &Ranking| -> Option<Times> {
         let same = ranking.engines.iter().find(|other| other.name == engine)?;
         // What a machine has from others counts there.
         same.times.get(quantity).filter(|times| times.machines == 0).cloned()
     };
-    let all: Vec<(&str, Times)> = run.recorded_times.iter().filter_map(|of| Some((of.machine.as_str(), of_machine(of)?))).collect();
-    let medians: Vec<f64> = all.iter().map(|(_, times)| times.median).collect();
+    let all: Vec<Times> = run.recorded_times.iter().filter_map(of_machine).collect();
+    let medians: Vec<f64> = all.iter().map(|times| times.median).collect();
     Some(Times {
-        robots: all.iter().map(|(_, times)| times.robots).max()?,
+        robots: all.iter().map(|times| times.robots).max()?,
         median: quantile_of(&medians, 0.5),
-        least: all.iter().map(|(_, times)| times.least).reduce(smaller)?,
-        most: all.iter().map(|(_, times)| times.most).reduce(larger)?,
-        estimated: all.iter().any(|(_, times)| times.estimated),
-        machines: all.iter().map(|&(machine, _)| machine).collect::<BTreeSet<_>>().len(),
+        least: all.iter().map(|times| times.least).reduce(smaller)?,
+        most: all.iter().map(|times| times.most).reduce(larger)?,
+        estimated: all.iter().any(|times| times.estimated),
+        machines: all.len(),
     })
 }

@@ -9,14 +9,14 @@ use featherbench_results::{Errors, Ranked, Ranking, Row, RunInfo, Times};
 use featherbench_study::figures::{drawing, errors};
 use maud::{Markup, html};
 
-use super::ranking;
+use super::{QUANTITIES, ranking};
 
 /// The spacing of doubles at one: errors are multiples of it.
 const EPSILON: f64 = f64::EPSILON;
 /// No value.
 const NONE: &str = "–";
-/// The quantities in the order of the table: the one that decides comes first.
-const ORDER: [(&str, &str); 3] = [("fd", "FD"), ("id", "ID"), ("mass_matrix", "M")];
+/// What the quantities are called in narrow columns.
+const NARROW: [&str; 3] = ["FD", "ID", "M"];
 
 /// Makes the section; a run without errors and times of engines has none.
 pub(crate) fn section(run: &RunInfo, rows: &[Row], overview: &Overview) -> Option<Section> {
@@ -68,20 +68,20 @@ fn table(overview: &Overview, ranking: &Ranking) -> Markup {
             thead {
                 tr {
                     th scope="col" rowspan="2" { "engine" } th scope="col" rowspan="2" { "right" }
-                    th scope="colgroup" colspan=(ORDER.len()) { "error, in units of rounding 2⁻⁵²" }
-                    th scope="colgroup" colspan=(ORDER.len()) { "time over ours" }
+                    th scope="colgroup" colspan=(QUANTITIES.len()) { "error, in units of rounding 2⁻⁵²" }
+                    th scope="colgroup" colspan=(QUANTITIES.len()) { "time over ours" }
                     th scope="col" rowspan="2" { "gravest finding" }
                 }
                 tr {
-                    @for _ in 0..2 { @for (quantity, short) in ORDER { th.number scope="col" title=(labels::quantity(quantity)) { (short) } } }
+                    @for _ in 0..2 { @for (quantity, short) in QUANTITIES.into_iter().zip(NARROW) { th.number scope="col" title=(labels::quantity(quantity)) { (short) } } }
                 }
             }
             tbody { @for of in ranked {
                 tr {
                     th scope="row" { (engine(overview, &of.name)) " " small { (of.version) } }
                     td data-of="right" { b { (if of.asked == 0 { NONE.to_owned() } else { share(of.right, of.asked) }) } @if of.asked > 0 { small { "of " (grouped(of.asked)) } } }
-                    @for (quantity, short) in ORDER { td.number data-of={ (short) ", error" } { (error_cell(of.errors.get(quantity), overview)) } }
-                    @for (quantity, short) in ORDER { td.number data-of={ (short) ", time" } { (time_cell(of, quantity)) } }
+                    @for (quantity, short) in QUANTITIES.into_iter().zip(NARROW) { td.number data-of={ (short) ", error" } { (error_cell(of.errors.get(quantity), overview)) } }
+                    @for (quantity, short) in QUANTITIES.into_iter().zip(NARROW) { td.number data-of={ (short) ", time" } { (time_cell(of, quantity)) } }
                     td.gravest { (of.gravest) }
                 }
             } }
@@ -121,8 +121,8 @@ fn note(ranking: &Ranking) -> String {
     let mut text = String::new();
     if let Some((robots, states)) = most(|errors| errors.robots).zip(most(|errors| errors.states)) {
         text = format!(
-            "Right: answers within their bound, of all questions that have one. Errors of forward dynamics (FD), inverse dynamics (ID) and the mass matrix (M) \
-             are against the truth in 32 digits, on {} at {}: the median and the worst robot, in units of 2⁻⁵².",
+            "Right: answers within their bound, of all questions that have one. FD: forward dynamics. ID: inverse dynamics. M: mass matrix. \
+             Errors are against the truth in 32 digits, in units of 2⁻⁵²: the median of up to {} at {}, and the worst robot.",
             count(robots, "robot"),
             count(states, "state")
         );
@@ -136,7 +136,7 @@ fn note(ranking: &Ranking) -> String {
             format!(" Times are medians over up to {robots}, with the least and the most; measured on this machine.")
         }
         (Some(machines), Some(robots)) => format!(
-            " Times are medians over up to {robots}, with the least and the most, recorded on {}. On this machine only ours was measured; `run --suite timing --live` measures all.",
+            " Times are medians over up to {robots}, with the least and the most. What this run did not measure was recorded on {}; `run --suite timing --live` measures all.",
             count(machines, "other machine")
         ),
     }
@@ -155,7 +155,7 @@ fn whole(overview: &Overview, ranking: &Ranking) -> Markup {
             thead { tr { th scope="col" { "engine" } th scope="col" { "compute" } @for head in heads { th scope="col" { (head) } } } }
             tbody {
                 @for of in &ranking.engines {
-                    @for (quantity, _) in ORDER {
+                    @for quantity in QUANTITIES {
                         @let (errors, times) = (of.errors.get(quantity), of.times.get(quantity));
                         @if errors.is_some() || times.is_some() {
                             tr {
@@ -182,7 +182,7 @@ fn whole(overview: &Overview, ranking: &Ranking) -> Markup {
 /// Error against time, a mark for each engine, by quantity.
 fn figure(ranking: &Ranking) -> (Markup, Vec<Part>) {
     let mut drawings = Vec::new();
-    for (quantity, _) in ORDER {
+    for quantity in QUANTITIES {
         let mark = |of: &Ranked| {
             let (errors, times) = of.errors.get(quantity).zip(of.times.get(quantity))?;
             let about = vec![
