@@ -176,7 +176,9 @@ def compare(
     done = subprocess.run([find(), *arguments, "--", *(fspath(file) for file in files)], capture_output=True, text=True, check=False)
     # 1 says that engines differ, which is an answer.
     if done.returncode not in (0, 1):
-        raise RunError(done.stderr.strip().splitlines()[-1] if done.stderr.strip() else f"the program ended with {done.returncode}")
+        # What is wrong with each file is told before the last line.
+        said = [line for line in done.stderr.splitlines() if line.startswith(("not compared: ", "error: "))]
+        raise RunError("\n".join(said) or f"the program ended with {done.returncode}")
     info = json.loads(_whole(folder, "run.json"))
     questions = (
         Question(

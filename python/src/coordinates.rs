@@ -51,7 +51,7 @@ impl Robot {
     /// -------
     /// ndarray, shape (n,) or (states, n)
     ///     Rad and m, for a model with this robot's order of joints, and angles of continuous joints.
-    #[doc = text!(errors "Naming the joint for which the engine has no coordinates, or saying why Pinocchio's own parser may give the URDF others.")]
+    #[doc = text!(errors "Naming the joint for which the engine has no coordinates, or saying why Pinocchio's own parser gives the URDF others.")]
     /// >>> robot = featherbench.Robot.generated("humanoid")
     /// >>> q = robot.random(seed=1)
     /// >>> np.array_equal(robot.to_pinocchio(q), q)  # it has no planar joint

@@ -20,6 +20,7 @@ Pair = tuple[featherbench.Robot, Any, Doubles, Doubles, Doubles]
 
 URDF = Path(__file__).parents[2] / "guide" / "arm.urdf"
 STATES = 50
+TREES = 40
 # Both sides round some hundred operations on numbers below a hundred.
 FORMED = 1e-12
 # Solutions with M, whose condition number is below a thousand here.
@@ -107,3 +108,33 @@ def test_configurations(pair: Pair) -> None:
     close(robot.difference(start, end), np.array([pin.difference(model, *way) for way in zip(start, end, strict=True)]), FORMED)
     close(robot.neutral(), pin.neutral(model), 0)
     assert np.array_equal(robot.to_pinocchio(q), q)
+
+
+def test_conversions_are_refused_where_the_order_is_another(tmp_path: Path) -> None:
+    """Random trees with fixed joints between, whose names are in no order."""
+    rng, refused = np.random.default_rng(), 0
+    for case in range(TREES):
+        file = tmp_path / f"{case}.urdf"
+        file.write_text(random_tree(rng, links=int(rng.integers(3, 8))))
+        theirs = [name for name in pin.buildModelFromUrdf(str(file)).names if name != "universe"]
+        robot = featherbench.Robot.from_urdf(file)
+        if [joint.name for joint in robot.joints] == theirs:
+            assert np.array_equal(robot.to_pinocchio(robot.neutral()), robot.neutral()), file.read_text()
+        else:
+            refused += 1
+            with pytest.raises(featherbench.Error, match="sorts siblings by the names of their joints"):
+                robot.to_pinocchio(robot.neutral())
+    # Of such trees both kinds are common.
+    assert 0 < refused < TREES
+
+
+def random_tree(rng: np.random.Generator, links: int) -> str:
+    """Write a URDF whose links hang on earlier ones, by revolute or fixed joints; the first joint moves."""
+    inertial = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+    parts = ['<robot name="tree"><link name="l0"/>']
+    for link, name in enumerate(rng.permutation(links - 1), start=1):
+        kind = "revolute" if link == 1 or rng.random() < 0.6 else "fixed"
+        parts.append(f'''<link name="l{link}">{inertial}</link>
+            <joint name="{"jJ"[rng.integers(2)]}{name}" type="{kind}"><parent link="l{rng.integers(link)}"/><child link="l{link}"/>
+            <axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>''')
+    return "".join(parts) + "</robot>"

@@ -19,7 +19,7 @@ impl Robot {
     ///
     /// # Errors
     /// [`Error::NoCoordinates`] when the engine does not have a joint of this robot; [`Error::OtherCoordinates`] when the robot is of a URDF to
-    /// which Pinocchio's own parser may give other coordinates.
+    /// which Pinocchio's own parser gives other coordinates.
     pub fn nq_of(&self, convention: Convention) -> Result<usize, Error> {
         self.check_parser(convention)?;
         self.joints().iter().map(|joint| convention.check(joint).map(|()| convention.nq(joint))).sum()
@@ -273,7 +273,7 @@ impl Robot {
         self.each_v(convention, q, ("the engine's tau", theirs), |_, turn, theirs, tau| turn.undo(theirs, tau))
     }
 
-    /// An error, if the engine's own parser may give the robot's file other coordinates.
+    /// An error, if the engine's own parser gives the robot's file other coordinates.
     fn check_parser(&self, convention: Convention) -> Result<(), Error> {
         match &self.inner.otherwise {
             Some(reason) if convention == Convention::Pinocchio => Err(Error::OtherCoordinates { reason: reason.clone() }),

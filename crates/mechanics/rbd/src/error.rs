@@ -119,9 +119,9 @@ pub enum Error {
     /// A batch was not computed, or some of its states failed.
     #[error(transparent)]
     Batch(#[from] BatchError),
-    /// Pinocchio's own parser may give the file from which the robot was read other coordinates.
+    /// Pinocchio's own parser gives the file from which the robot was read other coordinates.
     #[error(
-        "the numbers of a model that Pinocchio's own URDF parser built may be others: {reason}; reorder them by the names of its model \
+        "the numbers of a model that Pinocchio's own URDF parser built are others: {reason}; reorder them by the names of its model \
          (`idx_qs`, `idx_vs`), or read the robot from a description, whose order of joints is that of its model"
     )]
     OtherCoordinates {

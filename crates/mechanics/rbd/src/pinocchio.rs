@@ -2,20 +2,19 @@
 
 use crate::robot::Joint;
 use featherbench_model::JointType;
-use std::collections::HashMap;
 
-/// Why that parser may give the joints of a URDF other numbers, or another order; `None` if it cannot.
+/// Why that parser gives the joints of a URDF other numbers, or another order; `None` if it does not.
 ///
-/// It is built on urdfdom. Siblings are sorted by the names of their joints, those of fixed joints included, which a robot no longer has: so a
-/// robot with siblings is not decided here. A continuous joint has a cosine and a sine in place of its angle.
-pub(crate) fn otherwise(joints: &[Joint]) -> Option<String> {
+/// It is built on urdfdom, whose order `sorted` is. A continuous joint has a cosine and a sine in place of its angle.
+pub(crate) fn otherwise(joints: &[Joint], sorted: &[String]) -> Option<String> {
     let unlimited = |joint: &&Joint| {
         matches!(joint.kind, JointType::Revolute { .. }) && joint.limits.iter().all(|(low, high)| low.is_infinite() && high.is_infinite())
     };
     if let Some(joint) = joints.iter().find(unlimited) {
         return Some(format!("it gives the continuous joint '{}' a cosine and a sine in place of an angle", joint.name));
     }
-    let mut first = HashMap::new();
-    let (before, joint) = joints.iter().find_map(|joint| Some((first.insert(&joint.parent, joint)?, joint)))?;
-    Some(format!("it sorts siblings by the names of their joints, and '{}' and '{}' are such", before.name, joint.name))
+    // A floating base that no joint of the file is comes first in both.
+    let of_file = joints.iter().skip(joints.len().saturating_sub(sorted.len()));
+    let (ours, theirs) = of_file.zip(sorted).find(|(joint, name)| joint.name != **name)?;
+    Some(format!("it sorts siblings by the names of their joints, so '{theirs}' stands where '{}' stands here", ours.name))
 }

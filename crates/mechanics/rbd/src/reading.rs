@@ -22,8 +22,7 @@ impl Robot {
     /// assert!(matches!(missing, Error::Urdf(_)) && missing.to_string().starts_with("no_such_robot.urdf"));
     /// ```
     pub fn from_urdf(path: impl AsRef<Path>) -> Result<Self, Error> {
-        let (description, notes) = urdf::read(path, &with_base(Base::Fixed))?;
-        Self::read(&description, &notes, pinocchio::otherwise)
+        Self::of_urdf(&urdf::content(&path)?, &path.as_ref().display().to_string(), Base::Fixed)
     }
 
     /// The same with a free joint, `root_joint`, between the world and the root link.
@@ -35,8 +34,7 @@ impl Robot {
     /// assert!(featherbench_rbd::Robot::from_urdf_floating("no_such_robot.urdf").is_err());
     /// ```
     pub fn from_urdf_floating(path: impl AsRef<Path>) -> Result<Self, Error> {
-        let (description, notes) = urdf::read(path, &with_base(Base::Floating))?;
-        Self::read(&description, &notes, pinocchio::otherwise)
+        Self::of_urdf(&urdf::content(&path)?, &path.as_ref().display().to_string(), Base::Floating)
     }
 
     /// Reads URDF from a text; `name` stands for the file in errors.
@@ -55,9 +53,13 @@ impl Robot {
     /// # Ok::<(), featherbench_rbd::Error>(())
     /// ```
     pub fn from_urdf_text(text: &str, name: &str, floating: bool) -> Result<Self, Error> {
-        let base = if floating { Base::Floating } else { Base::Fixed };
-        let (description, notes) = urdf::import(text, name, &with_base(base))?;
-        Self::read(&description, &notes, pinocchio::otherwise)
+        Self::of_urdf(text, name, if floating { Base::Floating } else { Base::Fixed })
+    }
+
+    fn of_urdf(text: &str, file: &str, base: Base) -> Result<Self, Error> {
+        let parsed = urdf::Parsed::of(text.as_bytes(), file)?;
+        let (description, notes) = parsed.import(&Options { base, ..Options::default() })?;
+        Self::read(&description, &notes, |joints| pinocchio::otherwise(joints, &parsed.sorted_joints()))
     }
 
     /// Reads a neutral description file (`datasets/models/FORMAT.md`), which `featherbench gen` writes from URDF and MJCF.
@@ -157,8 +159,4 @@ impl Robot {
     pub fn generated(family: &str) -> Result<Self, Error> {
         Self::from_description(&Family::parse(family)?.generate()?)
     }
-}
-
-fn with_base(base: Base) -> Options {
-    Options { base, ..Options::default() }
 }

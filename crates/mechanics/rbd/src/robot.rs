@@ -42,7 +42,7 @@ pub(crate) struct Inner {
     /// Where quaternions begin in q, and the place of their joint in `joints`.
     pub(crate) quaternions: Vec<(usize, usize)>,
     notes: Vec<String>,
-    /// Why Pinocchio's own parser may give the same file other coordinates.
+    /// Why Pinocchio's own parser gives the same file other coordinates.
     pub(crate) otherwise: Option<String>,
 }
 
@@ -111,7 +111,7 @@ impl Robot {
         Self::read(description, notes, |_| None)
     }
 
-    /// The same of a file; `otherwise` says why Pinocchio's own parser may give its joints other coordinates.
+    /// The same of a file; `otherwise` says why Pinocchio's own parser gives its joints other coordinates.
     pub(crate) fn read(
         description: &Description,
         notes: &[impl ToString],

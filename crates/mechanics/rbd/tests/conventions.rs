@@ -177,8 +177,8 @@ fn rotate([w, x, y, z]: [f64; 4], [a, b, c]: [f64; 3]) -> [f64; 3] {
     [x, y, z]
 }
 
-/// Pinocchio's own parser sorts siblings and gives continuous joints two numbers: where it can, nothing is converted. A chain of limited joints,
-/// and a robot that no URDF is of, are.
+/// Pinocchio's own parser sorts siblings and gives continuous joints two numbers: then nothing is converted. A robot with the same order, and one
+/// that no URDF is of, are.
 #[test]
 fn a_urdf_that_pinocchio_reads_otherwise_is_not_converted() {
     let link = |name: &str| {
@@ -196,8 +196,10 @@ fn a_urdf_that_pinocchio_reads_otherwise_is_not_converted() {
         Robot::from_urdf_text(&text, "r.urdf", false).unwrap()
     };
     let chain = |kind: &str| robot([joint("first", kind, "world", "a"), joint("second", "revolute", "a", "b")]);
-    let fork = robot([joint("left", "revolute", "world", "a"), joint("right", "prismatic", "world", "b")]);
-    for (robot, words) in [(chain("continuous"), "'first' a cosine and a sine"), (fork, "'left' and 'right'")] {
+    let fork = |one: &str, other: &str| robot([joint(one, "revolute", "world", "a"), joint(other, "prismatic", "world", "b")]);
+    let refused =
+        [(chain("continuous"), "'first' a cosine and a sine"), (fork("right", "left"), "'left' stands where 'right' stands here")];
+    for (robot, words) in refused {
         let (q, v) = (robot.neutral(), vec![0.0; robot.nv()]);
         let refused = [
             robot.to_pinocchio(&q),
@@ -213,6 +215,7 @@ fn a_urdf_that_pinocchio_reads_otherwise_is_not_converted() {
         let described = Robot::from_description(robot.description()).unwrap();
         assert_eq!(described.to_pinocchio(&q).unwrap(), q, "a model with this order of joints");
     }
-    let robot = chain("revolute");
-    assert_eq!(robot.to_pinocchio(&robot.neutral()).unwrap(), robot.neutral());
+    for robot in [chain("revolute"), fork("left", "right")] {
+        assert_eq!(robot.to_pinocchio(&robot.neutral()).unwrap(), robot.neutral());
+    }
 }

@@ -8,6 +8,7 @@ use crate::text::Lines;
 use featherbench_model::Placement;
 use featherbench_spatial::{RigidBodyInertia, Sym3, Transform, Vec3};
 use roxmltree::{Document, Node};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 
 /// Mass properties, in axes of their own.
@@ -85,6 +86,29 @@ pub(super) fn mimics(document: &Document) -> Vec<Mimic> {
         Some(Mimic { is_fixed: joint.attribute("type") == Some("fixed"), is_known: known(mimic.attribute("joint")) })
     };
     joints.iter().filter_map(of_joint).collect()
+}
+
+/// The joints that are not fixed, depth-first, with siblings sorted by name. Fixed joints are siblings, too: what they carry has their place.
+pub(super) fn sorted_joints(document: &Document) -> Vec<String> {
+    let joints: Vec<Node> = document.root_element().children().filter(|node| node.has_tag_name("joint")).collect();
+    let end = |joint: &Node, role: &str| joint.children().find(|node| node.has_tag_name(role))?.attribute("link").map(str::to_owned);
+    let ends: Vec<_> = joints.iter().filter_map(|joint| Some((joint, end(joint, "parent")?, end(joint, "child")?))).collect();
+    let children: HashSet<&String> = ends.iter().map(|(_, _, child)| child).collect();
+    let mut carried: HashMap<&String, BTreeMap<&str, (Option<&str>, &String)>> = HashMap::new();
+    for (joint, parent, child) in &ends {
+        let name = joint.attribute("name").unwrap_or_default();
+        let moving = (joint.attribute("type") != Some("fixed")).then_some(name);
+        carried.entry(parent).or_default().insert(name, (moving, child));
+    }
+    let mut sorted = Vec::new();
+    // Each link is left once, so a file that is no tree comes to its end, too.
+    let root = carried.keys().find(|link| !children.contains(**link)).copied();
+    let mut next: Vec<(Option<&str>, &String)> = root.map(|root| (None, root)).into_iter().collect();
+    while let Some((joint, link)) = next.pop() {
+        sorted.extend(joint.map(str::to_owned));
+        next.extend(carried.remove(link).unwrap_or_default().into_values().rev());
+    }
+    sorted
 }
 
 fn link(element: Element, density: f64) -> Result<FileLink, At> {

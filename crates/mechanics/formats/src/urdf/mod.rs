@@ -92,9 +92,16 @@ impl fmt::Display for Note {
 /// [`UrdfError`], naming file, line, column and the link or joint.
 pub fn read(path: impl AsRef<Path>, options: &Options) -> Result<(Description, Vec<Note>), UrdfError> {
     let path = path.as_ref();
-    let file = path.display().to_string();
-    let text = text::read(path, LIMIT).map_err(|problem| unplaced(&file, problem))?;
-    import(&text, &file, options)
+    import(&content(path)?, &path.display().to_string(), options)
+}
+
+/// The text of a URDF file.
+///
+/// # Errors
+/// [`UrdfError`], naming the file: it cannot be read, is too large or is no UTF-8.
+pub fn content(path: impl AsRef<Path>) -> Result<String, UrdfError> {
+    let path = path.as_ref();
+    text::read(path, LIMIT).map_err(|problem| unplaced(&path.display().to_string(), problem))
 }
 
 /// Imports URDF from a text; `file` is its name in errors.
@@ -147,6 +154,11 @@ impl<'a> Parsed<'a> {
     /// Damping and friction that no joint can have, in the order of the file. The import refuses them.
     pub fn bad_values(&self) -> Vec<BadValue> {
         links::bad_values(&self.document, &text::Lines::new(self.text))
+    }
+
+    /// The joints that are not fixed, depth-first, with siblings in the order of their joints' names: the order of parsers built on urdfdom.
+    pub fn sorted_joints(&self) -> Vec<String> {
+        links::sorted_joints(&self.document)
     }
 
     /// The mimics in the order of the file.
