@@ -118,6 +118,9 @@ pub struct RunArgs {
     /// An earlier run or shard whose times balance the shards; may be repeated. All shards must be given the same.
     #[arg(long, value_name = "DIR", requires = "shard")]
     pub costs: Vec<PathBuf>,
+    /// Evaluate cells of this study: their ids come over standard input, and the outcomes go to standard output. A run starts such processes.
+    #[arg(long, value_name = "STUDY", hide = true)]
+    pub answer: Option<String>,
     /// Open the report when the run ends.
     #[arg(long)]
     pub open: bool,

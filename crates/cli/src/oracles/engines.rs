@@ -22,7 +22,7 @@ pub struct Opened {
 /// What a run asks of engines.
 pub struct Asked<'a> {
     /// Engines beside ours that must answer.
-    pub engines: &'a [String],
+    pub engines: Vec<String>,
     /// Engines that are timed if they are installed, and have a clock.
     pub timed: Vec<String>,
     /// Engines that are asked alone if they are installed, with or without a clock.
@@ -48,11 +48,14 @@ impl<'a> Asked<'a> {
         let of_studies = |clocks: bool| -> Vec<String> {
             studies.iter().filter(|study| study.needs_clocks() == clocks).flat_map(|study| study.engines()).cloned().collect()
         };
+        let (timed, alone) = (of_studies(true), of_studies(false));
+        // A process that answers for one study needs the engines that this one names.
+        let is_due = |name: &&String| args.answer.is_none() || timed.contains(name) || alone.contains(name);
         Self {
-            engines: loaded.suite.engines(),
-            timed: of_studies(true),
-            alone: of_studies(false),
-            externals: &args.asked.externals,
+            engines: loaded.suite.engines().iter().filter(is_due).cloned().collect(),
+            timed,
+            alone,
+            externals: if args.answer.is_none() { &args.asked.externals } else { &[] },
             live: args.asked.live,
             seed: args.asked.seed,
             recorded: args.asked.recorded.clone().unwrap_or_else(|| root.recorded()),
@@ -64,7 +67,7 @@ impl<'a> Asked<'a> {
     /// Engines that are asked themselves, and must answer.
     pub fn live(root: &Root, engines: &'a [String], limits: Limits) -> Self {
         Self {
-            engines,
+            engines: engines.to_vec(),
             timed: Vec::new(),
             alone: Vec::new(),
             externals: &[],

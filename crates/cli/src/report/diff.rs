@@ -3,7 +3,9 @@
 use crate::args::DiffArgs;
 use crate::fail::Fail;
 use crate::message::{self, say, tell};
-use ::featherbench_results::{Apart, Change, Changed, Diff, ERROR_FACTOR, Row, RunInfo, TIME_NOISE, atomic_write, diff, read_run};
+use ::featherbench_results::{
+    Apart, Change, Changed, Diff, ERROR_FACTOR, Row, RunInfo, TIME_NOISE, TIME_WIDTHS, atomic_write, diff, read_run,
+};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
@@ -50,6 +52,7 @@ fn json(before: &RunInfo, after: &RunInfo, found: &Diff, apart: Option<&Apart>) 
         "same_suite": apart.is_none(),
         "compared": found.compared,
         "invalid": found.invalid,
+        "common": found.common,
         "only_before": only[0],
         "only_after": only[1],
         "changes": found.changes.iter().filter_map(changed).collect::<Vec<_>>(),
@@ -136,9 +139,12 @@ fn summary(before: &RunInfo, after: &RunInfo, found: &Diff) -> String {
     }
     let _ = write!(
         text,
-        ". An error changes by a factor of {ERROR_FACTOR}; a time when the intervals are apart and the ratio is beyond ±{:.0} % and the A/A controls",
+        ". An error changes by a factor of {ERROR_FACTOR}; a time when the ratio is beyond ±{:.0} % and {TIME_WIDTHS} times the width of both intervals",
         100.0 * TIME_NOISE
     );
+    if found.common != 1.0 {
+        let _ = write!(text, ", over the factor that all have in common, which is {:.3}", found.common);
+    }
     text
 }
 

@@ -1,5 +1,6 @@
 //! `featherbench run`: plan, evaluate, compare, judge, report.
 
+mod again;
 mod command;
 pub mod filter;
 pub mod hyperqueue;
@@ -20,6 +21,7 @@ use crate::progress::Bar;
 use crate::report;
 use crate::robots::{self, Loaded};
 use crate::root::Root;
+use crate::run::again::Again;
 use ::featherbench_results::{Culprit, Drawing, Expectation, GateKind, Row, RunInfo};
 use featherbench_bench::run::{Opening, Run};
 use featherbench_bench::{Cell, Context, Counts, Gates, HarnessError, Robot, Study, drawing, provenance};
@@ -138,6 +140,9 @@ pub fn opening(args: &RunArgs) -> Opening {
 /// Runs a suite and reports on it, or evaluates a shard of it.
 pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let prepared = prepare(root, args)?;
+    if args.answer.is_some() {
+        return again::answer(&prepared);
+    }
     // Before a folder is made; of a run that goes on, that it is the same comes first.
     if !args.resume {
         prepared.check_filter(args)?;
@@ -150,6 +155,7 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
         return shard::evaluate(&prepared, args, shard, &folder, info);
     }
     let mut run = Run::open(&folder, opening(args), info)?;
+    run.new_process = Some(Box::new(Again::of(args)));
     prepared.check_filter(args)?;
     run.info.seconds.insert("setup".into(), prepared.start.elapsed().as_secs_f64());
     let rows = run.conduct(&prepared.studies, &prepared.context(), &|cell| prepared.keeps(cell), &Bar::of_run(&folder))?;
@@ -163,6 +169,7 @@ fn studies(root: &Root, loaded: &Loaded, args: &RunArgs, program: &str) -> Resul
     let setup = Setup { suite: &loaded.suite, live: args.asked.live, program, reproduce, measure };
     let mut studies = featherbench_registry::of_suite(&setup)?;
     studies.retain(|study| !(args.asked.no_timing && study.measures_time()));
+    studies.retain(|study| args.answer.as_ref().is_none_or(|answer| answer == study.name()));
     Ok(studies)
 }
 

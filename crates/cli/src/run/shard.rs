@@ -4,6 +4,7 @@ use crate::args::RunArgs;
 use crate::fail::Fail;
 use crate::message::say;
 use crate::progress::Bar;
+use crate::run::again::Again;
 use crate::run::{Prepared, opening};
 use ::featherbench_results::RunInfo;
 use featherbench_bench::run::Run;
@@ -27,7 +28,8 @@ const LOCK_NAME: &str = "lock";
 pub fn evaluate(prepared: &Prepared, args: &RunArgs, shard: Shard, folder: &Path, info: RunInfo) -> Result<(), Fail> {
     let (plan, started) = (plan(prepared, args)?, info.started.clone());
     let ids: Vec<String> = plan.part(shard).into_iter().map(|planned| planned.id.clone()).collect();
-    let run = Run::open_shard(folder, opening(args), info, shard, ids.iter().map(String::as_str))?;
+    let mut run = Run::open_shard(folder, opening(args), info, shard, ids.iter().map(String::as_str))?;
+    run.new_process = Some(Box::new(Again::of(args)));
     prepared.check_filter(args)?;
     let lock = File::create(folder.join(LOCK_NAME)).and_then(|file| file.lock().map(|()| file));
     let _lock = lock.map_err(|source| HarnessError::io(folder, source))?;

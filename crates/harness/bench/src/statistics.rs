@@ -1,33 +1,31 @@
 //! Conclusions from the blocks of a paired experiment.
 //!
 //! Each round gives every candidate one block, in random order. A *ratio* is formed within a round, of two blocks that ran within
-//! milliseconds of each other. Then the median over the rounds is taken. A disturbance that lasts for a while (another program, a
+//! milliseconds of each other. Then the median over the rounds of a process is taken. A disturbance that lasts for a while (another program, a
 //! processor's frequency) is on both sides of such a ratio and cancels. In the ratio of two medians it need not.
 //!
-//! Intervals are percentile bootstrap intervals. Whole epochs (rounds in one layout of the memory) are drawn with replacement, with all
-//! blocks of their rounds. The median is taken of each draw, and the interval contains the middle of these medians. So it shows how much
-//! the median would vary in other layouts too. Every draw comes from a generator with a seed.
+//! Where a process has its code and data is an accident that lasts as long as it does. So an experiment is made in several processes, one
+//! after another, over the length of the study. Each gives one number, its median. An estimate is the geometric mean of these, and its
+//! interval is Student's, of their logarithms: whatever differs between processes or moments is in it.
 
-use featherbench_robots::Random;
-
-/// Epochs of an experiment, and so the fewest rounds. Times vary more between layouts than between rounds of one layout. With thirty epochs
-/// of ten rounds a third of all A/A ratios had an interval slightly wider than the noise. The same time is better spent on many epochs.
-pub const EPOCHS: usize = 60;
-/// Fraction of the bootstrap's medians inside an interval that is reported.
-pub const LEVEL: f64 = 0.95;
-/// The same for an A/A ratio. A robot has about twenty of them; chance alone must not invalidate it more often than once in fifty runs.
-pub const CONTROL_LEVEL: f64 = 0.999;
-/// Two engines differ if the interval of their ratio is farther from one than this. The interval of an A/A ratio must be within it.
+/// Processes of an experiment. With n of them the interval has the half-width t·s/√n: 1.24 s for five, 0.72 s for ten, 0.47 s for twenty.
+pub const PROCESSES: usize = 10;
+/// Epochs of a process (rounds in one layout of the memory). Times vary more between layouts than between rounds of one layout.
+pub const EPOCHS: usize = 6;
+/// Two engines differ if the interval of their ratio is farther from one than this.
 pub const NOISE: f64 = 0.02;
-/// Number of bootstrap draws: one median is then beyond each end of an interval at [`CONTROL_LEVEL`].
-const RESAMPLES: usize = 2000;
+/// The interval of an A/A ratio must be within 1 ± this: beyond it no time of the experiment counts. A wider interval within it needs no
+/// rule: whatever made it wide made the others wide.
+pub const VOID: f64 = 0.05;
+/// The 0.975 quantile of Student's distribution with [`PROCESSES`] − 1 degrees of freedom: intervals hold 95 %.
+const STUDENT: f64 = 2.262_157_162_798_205;
 
-/// A median with its interval.
+/// A value with its interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The median of the samples.
+    /// The geometric mean of the processes' medians.
     pub value: f64,
-    /// Lower end of its interval.
+    /// Lower end of its 95 % interval.
     pub low: f64,
     /// Upper end.
     pub high: f64,
@@ -45,36 +43,38 @@ pub enum Pace {
 }
 
 impl Estimate {
-    /// The median of samples. The fraction `level` of the bootstrap's medians is in its interval. NaN without samples, or if one is NaN.
-    pub fn median(samples: &[f64], level: f64, random: &mut Random) -> Self {
-        if samples.is_empty() || samples.iter().any(|sample| sample.is_nan()) {
+    /// The estimate of the medians of [`PROCESSES`] processes. NaN if there are not as many, or one is no positive number.
+    pub fn of(medians: &[f64]) -> Self {
+        let good = medians.len() == PROCESSES && medians.iter().all(|&median| median > 0.0 && median.is_finite());
+        if !good {
             return Self { value: f64::NAN, low: f64::NAN, high: f64::NAN };
         }
-        // If there are fewer samples than epochs, each is an epoch. Samples that do not fill an epoch are not drawn.
-        let epoch = (samples.len() / EPOCHS).max(1);
-        let epochs = samples.len() / epoch;
-        // A draw is how often it takes each epoch. Sorted once, the samples with these weights give the median of every draw.
-        let mut sorted: Vec<(f64, usize)> = samples[..epoch * epochs].iter().enumerate().map(|(k, &sample)| (sample, k / epoch)).collect();
-        sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        let mut taken = vec![0; epochs];
-        let mut medians: Vec<f64> = (0..RESAMPLES)
-            .map(|_| {
-                taken.fill(0);
-                for _ in 0..epochs {
-                    taken[draw(random, epochs)] += 1;
-                }
-                weighted_median(&sorted, &taken)
-            })
-            .collect();
-        medians.sort_unstable_by(f64::total_cmp);
-        let tail = 0.5 * (1.0 - level);
-        Self { value: median(&mut samples.to_vec()), low: quantile(&medians, tail), high: quantile(&medians, 1.0 - tail) }
+        let count = PROCESSES as f64;
+        // Over the first, so that equal medians give themselves to the last bit.
+        let logs = || medians.iter().map(|median| (median / medians[0]).ln());
+        let mean = logs().sum::<f64>() / count;
+        let variance = logs().map(|log| (log - mean) * (log - mean)).sum::<f64>() / (count - 1.0);
+        let half = STUDENT * (variance / count).sqrt();
+        let value = medians[0] * mean.exp();
+        Self { value, low: value * (-half).exp(), high: value * half.exp() }
     }
 
-    /// The median over the rounds of the ratio of an engine's block to the reference's.
-    pub fn ratio(engine: &[f64], reference: &[f64], level: f64, random: &mut Random) -> Self {
-        let ratios: Vec<f64> = engine.iter().zip(reference).map(|(a, b)| a / b).collect();
-        Self::median(&ratios, level, random)
+    /// The time of a candidate, of its blocks process by process.
+    pub fn time<'s>(processes: impl IntoIterator<Item = &'s [f64]>) -> Self {
+        Self::of(&processes.into_iter().map(|blocks| median(&mut blocks.to_vec())).collect::<Vec<_>>())
+    }
+
+    /// The ratio of a candidate's time to another's, of the blocks of both process by process.
+    pub fn ratio<'s>(processes: impl IntoIterator<Item = (&'s [f64], &'s [f64])>) -> Self {
+        let median_ratio = |(of, over): (&[f64], &[f64])| median(&mut of.iter().zip(over).map(|(a, b)| a / b).collect::<Vec<_>>());
+        Self::of(&processes.into_iter().map(median_ratio).collect::<Vec<_>>())
+    }
+
+    /// The ratio, whose interval is wider by what an A/A ratio misses 1: two copies of one program differ by so much in these processes.
+    #[must_use]
+    pub fn widened(self, control: &Self) -> Self {
+        let missed = (control.low.max(1.0 / control.high)).max(1.0);
+        Self { low: self.low / missed, high: self.high * missed, ..self }
     }
 
     /// The pace: a difference exists if the interval is beyond 1 ± noise, not just beyond one.
@@ -88,46 +88,20 @@ impl Estimate {
         }
     }
 
-    /// Why the experiment is not valid: the interval of this ratio of two copies of one program is wider than 1 ± [`NOISE`]. `None` if it
-    /// is within. (Within it the two may really differ, as their data are at different places. No finding is made from so little.)
+    /// Why the experiment is not valid: the interval of this ratio of two copies of one program is not within 1 ± [`VOID`]. `None` if it is.
     pub fn complaint(&self) -> Option<String> {
         let Self { value, low, high } = self;
-        let good = *low >= 1.0 - NOISE && *high <= 1.0 + NOISE;
+        let good = *low >= 1.0 - VOID && *high <= 1.0 + VOID;
         (!good)
-            .then(|| format!("the second copy of featherbench over the first is {value:.4} [{low:.4}, {high:.4}]: not 1 within ± {NOISE}"))
+            .then(|| format!("the second copy of featherbench over the first is {value:.4} [{low:.4}, {high:.4}]: not 1 within ± {VOID}"))
     }
 }
 
-/// Uniform among 0 … count−1, from 32 bits: four draws from one block of the generator.
-pub fn draw(random: &mut Random, count: usize) -> usize {
-    ((u64::from(random.bits32()) * count as u64) >> 32) as usize
-}
-
-/// The median of sorted samples, or the mean of the two in the middle. A sample counts once for each time that its epoch was taken.
-///
-/// All epochs have the same number of samples, and of n epochs n are taken. So the number of samples is that of `sorted`.
-pub fn weighted_median(sorted: &[(f64, usize)], taken: &[usize]) -> f64 {
-    let (middle, odd) = (sorted.len() / 2, sorted.len() % 2 == 1);
-    // The sample with `below` others under it.
-    let mut walk = sorted.iter();
-    let mut passed = 0;
-    let mut at = |below: usize, last: f64| {
-        let mut value = last;
-        while passed <= below {
-            let Some(&(sample, epoch)) = walk.next() else { return f64::NAN };
-            (value, passed) = (sample, passed + taken[epoch]);
-        }
-        value
-    };
-    if odd {
-        return at(middle, f64::NAN);
-    }
-    let lower = at(middle - 1, f64::NAN);
-    0.5 * (lower + at(middle, lower))
-}
-
-/// The median of the samples, or the mean of the two in the middle; it reorders them.
+/// The median of the samples, or the mean of the two in the middle; it reorders them. NaN without samples, or if one is NaN.
 pub fn median(samples: &mut [f64]) -> f64 {
+    if samples.is_empty() || samples.iter().any(|sample| sample.is_nan()) {
+        return f64::NAN;
+    }
     let (middle, odd) = (samples.len() / 2, samples.len() % 2 == 1);
     let (below, &mut upper, _) = samples.select_nth_unstable_by(middle, f64::total_cmp);
     if odd {

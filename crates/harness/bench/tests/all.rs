@@ -10,6 +10,7 @@ mod external;
 mod gates;
 mod measures;
 mod normalised;
+mod processes;
 mod properties;
 mod resume;
 #[path = "../../../mechanics/robots/tests/share.rs"]

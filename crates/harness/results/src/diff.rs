@@ -9,8 +9,16 @@ use std::collections::BTreeMap;
 pub const ERROR_FACTOR: f64 = 4.0;
 /// Errors below this count as zero: four roundings.
 pub const ERROR_FLOOR: f64 = 8.9e-16;
-/// Two times differ if their ratio is beyond this, or beyond the A/A ratios of their experiments if those are wider.
+/// Two times differ if their ratio is beyond this, and beyond [`TIME_WIDTHS`].
 pub const TIME_NOISE: f64 = 0.02;
+/// Two times differ if the logarithm of their ratio is beyond this multiple of √(h₁² + h₂²), with the half-widths h of the logarithms of their
+/// 95 % intervals.
+///
+/// These are 2.26 standard errors each: Student's quantile of ten processes. So the multiple is 5.4 standard errors of the difference. Chance
+/// alone is beyond in 4 of 10⁵ rows (Student's distribution with 18 degrees of freedom): in one of a hundred pairs of runs with 250 times.
+pub const TIME_WIDTHS: f64 = 2.4;
+/// The fewest times of which a common factor is formed.
+pub const COMMON: usize = 20;
 
 words! {
     /// The kind of a change, in the order of a listing.
@@ -21,7 +29,7 @@ words! {
         Count = "count",
         /// The error changed by more than [`ERROR_FACTOR`].
         Error = "error",
-        /// Its time: the intervals of the two runs are apart, and their ratio is beyond the noise.
+        /// Its time: the ratio, over the factor that all times have in common, is beyond the intervals and the noise.
         Time = "time",
         /// It is in the first run only.
         Gone = "gone",
@@ -57,6 +65,9 @@ pub struct Diff<'a> {
     pub compared: usize,
     /// Times that are not valid in one of the runs, and so were not compared.
     pub invalid: usize,
+    /// The factor that the times of the two runs have in common: the machine's, or that of a change to everything. Times are compared over it,
+    /// ratios as they are. 1 with fewer than [`COMMON`] times.
+    pub common: f64,
 }
 
 /// The columns that identify a row in a run. Parameters are not among them: the same time may be taken with other settings.
@@ -65,10 +76,10 @@ pub(crate) type Key<'a> = ([&'a str; 11], usize);
 /// Compares two runs.
 pub fn diff<'a>(before: &'a [Row], after: &'a [Row]) -> Diff<'a> {
     let (old, new) = (keyed(before), keyed(after));
-    let (old_noise, new_noise) = (Noise::of(before), Noise::of(after));
     let old_rows: BTreeMap<&Key, &Row> = old.iter().map(|(key, row)| (key, *row)).collect();
     let new_rows: BTreeMap<&Key, &Row> = new.iter().map(|(key, row)| (key, *row)).collect();
-    let mut diff = Diff { changes: Vec::new(), compared: 0, invalid: 0 };
+    let common = common(new.iter().filter_map(|(key, row)| Some((*old_rows.get(key)?, *row))));
+    let mut diff = Diff { changes: Vec::new(), compared: 0, invalid: 0, common };
     for (key, row) in &new {
         let Some(&was) = old_rows.get(key) else {
             diff.changes.push(Changed { change: Change::New, before: None, after: Some(row) });
@@ -76,14 +87,15 @@ pub fn diff<'a>(before: &'a [Row], after: &'a [Row]) -> Diff<'a> {
         };
         diff.compared += 1;
         let timed = is_time(row) && was.value.is_some() && row.value.is_some();
-        if timed && (!was.valid || !row.valid || old_noise.beside(&new_noise, row).is_nan()) {
+        if timed && (!was.valid || !row.valid || half_width(was).is_nan() || half_width(row).is_nan()) {
             diff.invalid += 1;
             continue;
         }
         let change = if was.verdict != row.verdict {
             Some(Change::Verdict)
         } else if timed {
-            apart(was, row, old_noise.beside(&new_noise, row)).then_some(Change::Time)
+            let shift = if is_absolute(row) { common } else { 1.0 };
+            apart(was, row, shift).then_some(Change::Time)
         } else {
             moved(was, row)
         };
@@ -153,47 +165,36 @@ fn moved(before: &Row, after: &Row) -> Option<Change> {
     (is > was * ERROR_FACTOR || was > is * ERROR_FACTOR).then_some(Change::Error)
 }
 
-/// The noise of a run's experiments by robot, quantity and cache: the larger distance of the A/A interval's ends from 1.
-pub(crate) struct Noise<'a>(BTreeMap<[&'a str; 3], f64>);
-
-impl<'a> Noise<'a> {
-    pub(crate) fn of(rows: &'a [Row]) -> Self {
-        let mut noise: BTreeMap<[&str; 3], f64> = BTreeMap::new();
-        for row in rows.iter().filter(|row| row.kind == Kind::Measured && row.metric == "control") {
-            let reach = noise.entry([&row.robot, &row.quantity, &row.cache]).or_default();
-            *reach = [row.ci_low, row.ci_high].into_iter().flatten().fold(*reach, |reach, end| larger(reach, (end - 1.0).abs()));
-        }
-        Self(noise)
-    }
-
-    /// The noise of a time in this run; NaN if it is not known.
-    pub(crate) fn of_row(&self, row: &Row) -> f64 {
-        self.beside(self, row)
-    }
-
-    /// The noise of a time in both runs; NaN if an A/A ratio is NaN, and the noise is not known.
-    fn beside(&self, after: &Self, row: &Row) -> f64 {
-        let key = [row.robot.as_str(), row.quantity.as_str(), row.cache.as_str()];
-        [self.0.get(&key), after.0.get(&key)].into_iter().flatten().copied().fold(TIME_NOISE, larger)
-    }
+/// Whether a time is in nanoseconds, which depend on the machine's state as ratios do not.
+fn is_absolute(row: &Row) -> bool {
+    row.metric == "ns_per_call"
 }
 
-/// The interval of a time; without one, the time itself.
-pub(crate) fn interval(row: &Row) -> (f64, f64) {
+/// The median ratio of the absolute times that count in both runs; 1 if there are few.
+fn common<'a>(pairs: impl Iterator<Item = (&'a Row, &'a Row)>) -> f64 {
+    let both = pairs.filter(|(was, row)| is_time(row) && is_absolute(row) && was.valid && row.valid);
+    let mut ratios: Vec<f64> = both.filter_map(|(was, row)| Some(row.value? / was.value?)).filter(|ratio| ratio.is_finite()).collect();
+    ratios.sort_unstable_by(f64::total_cmp);
+    if ratios.len() < COMMON { 1.0 } else { ratios[ratios.len() / 2] }
+}
+
+/// The half-width of the logarithm of a time's interval; zero without one. NaN if an end is NaN.
+pub(crate) fn half_width(row: &Row) -> f64 {
     let value = row.value.unwrap_or(f64::NAN);
-    (row.ci_low.unwrap_or(value), row.ci_high.unwrap_or(value))
+    let ends = [row.ci_high, row.ci_low].map(|end| end.unwrap_or(value));
+    // A value that was lost is a change of its own.
+    if value.is_nan() || ends == [value; 2] { 0.0 } else { 0.5 * (ends[0] / ends[1]).ln() }
 }
 
-/// Whether two times differ: disjoint intervals, and a ratio beyond the noise of both runs; or one of the two is NaN.
-fn apart(before: &Row, after: &Row, noise: f64) -> bool {
-    let (was, is) = (interval(before), interval(after));
-    let disjoint = is.0 > was.1 || is.1 < was.0;
+/// The logarithm of a ratio of times with these half-widths is beyond noise from here on.
+pub(crate) fn noise_of(was: f64, is: f64) -> f64 {
+    let (widths, least) = (TIME_WIDTHS * was.hypot(is), TIME_NOISE.ln_1p());
+    if widths > least { widths } else { least }
+}
+
+/// Whether two times differ by more than a common factor: their ratio over it is beyond the noise of both; or one of the two is NaN.
+fn apart(before: &Row, after: &Row, common: f64) -> bool {
     let (value, other) = (after.value.unwrap_or(f64::NAN), before.value.unwrap_or(f64::NAN));
-    let ratio = value / other;
-    value.is_nan() != other.is_nan() || disjoint && (ratio > 1.0 + noise || ratio < 1.0 / (1.0 + noise))
-}
-
-/// The larger of two numbers; NaN when either is, so that a fold keeps every NaN.
-fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+    let log = (value / other / common).ln();
+    value.is_nan() != other.is_nan() || log.abs() > noise_of(half_width(before), half_width(after))
 }

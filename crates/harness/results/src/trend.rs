@@ -3,19 +3,19 @@
 //! # The rule
 //! Two values of a number are *apart* as in [`diff`](crate::diff):
 //!
-//! - Times are apart when their intervals are disjoint and their ratio is beyond [`TIME_NOISE`] and the A/A controls of both runs.
+//! - Times are apart when their ratio is beyond [`TIME_NOISE`](crate::TIME_NOISE) and, by [`TIME_WIDTHS`](crate::TIME_WIDTHS), beyond both intervals.
 //! - Errors are apart when they differ by a factor of [`ERROR_FACTOR`].
 //! - Counts are apart when they differ.
 //!
 //! A *change point* lies between two runs if each of the last three values before it is apart from each of the first three after it, all on the
 //! same side. The values before it are those since the change point before. So a single run out of line is none. Under no change, six values
 //! have this order in one of ten cases (2·3!·3!/6!: the exact rank test of Mann and Whitney, Ann. Math. Stat. 18, 1947). That alone would be
-//! weak. Disjoint intervals and the A/A controls make it rare. With fewer than three values on a side it is not *confirmed*.
+//! weak. The widths of the intervals make it rare. With fewer than three values on a side it is not *confirmed*.
 
 use std::collections::BTreeMap;
 
-use crate::diff::{Key, Noise, interval, is_count, is_time, keyed};
-use crate::{ERROR_FACTOR, ERROR_FLOOR, Kind, Row, TIME_NOISE};
+use crate::diff::{Key, half_width, is_count, is_time, keyed, noise_of};
+use crate::{ERROR_FACTOR, ERROR_FLOOR, Kind, Row};
 
 /// Values on each side of a change point.
 pub const BESIDE: usize = 3;
@@ -38,10 +38,8 @@ pub struct Point {
     pub run: usize,
     /// The value.
     pub value: f64,
-    /// The interval of a time.
-    pub interval: (f64, f64),
-    /// The noise of the run: a ratio of times within 1 ± this is none.
-    pub noise: f64,
+    /// The half-width of the logarithm of a time's interval.
+    pub half_width: f64,
 }
 
 /// A number over the runs that have it.
@@ -73,7 +71,6 @@ pub struct ChangePoint {
 pub fn trends<'a>(runs: &[&'a [Row]], machines: &[String]) -> Vec<Trend<'a>> {
     let mut found: BTreeMap<Key<'a>, Trend<'a>> = BTreeMap::new();
     for (run, rows) in runs.iter().enumerate() {
-        let noise = Noise::of(rows);
         for (key, row) in keyed(rows) {
             let Some(value) = row.value.filter(|value| value.is_finite()) else { continue };
             let kind = match (is_time(row), row.kind) {
@@ -82,13 +79,13 @@ pub fn trends<'a>(runs: &[&'a [Row]], machines: &[String]) -> Vec<Trend<'a>> {
                 (false, Kind::Exact) if is_count(row) => Trended::Count,
                 (false, Kind::Exact) => Trended::Error,
             };
-            let noise = noise.of_row(row);
-            if kind == Trended::Time && (!row.valid || noise.is_nan() || machines.get(run) != machines.last()) {
+            let half_width = half_width(row);
+            if kind == Trended::Time && (!row.valid || half_width.is_nan() || machines.get(run) != machines.last()) {
                 continue;
             }
             let trend = found.entry(key).or_insert_with(|| Trend { row, kind, points: Vec::new() });
             (trend.row, trend.kind) = (row, kind);
-            trend.points.push(Point { run, value, interval: interval(row), noise });
+            trend.points.push(Point { run, value, half_width });
         }
     }
     found.into_values().filter(|trend| trend.points.len() > 1).collect()
@@ -120,10 +117,7 @@ impl Trend<'_> {
         match self.kind {
             Trended::Count => b.value > a.value,
             Trended::Error => floored(b.value) > ERROR_FACTOR * floored(a.value),
-            Trended::Time => {
-                let noise = [TIME_NOISE, a.noise, b.noise].into_iter().fold(0.0, |most, noise| if noise > most { noise } else { most });
-                b.interval.0 > a.interval.1 && b.value > (1.0 + noise) * a.value
-            }
+            Trended::Time => (b.value / a.value).ln() > noise_of(a.half_width, b.half_width),
         }
     }
 }

@@ -1,27 +1,17 @@
 //! What counts as a change between two runs.
 
-use featherbench_results::{Change, ERROR_FACTOR, ERROR_FLOOR, Kind, Relation, Row, TIME_NOISE, Verdict, diff};
+use featherbench_results::{COMMON, Change, ERROR_FACTOR, ERROR_FLOOR, Kind, Relation, Row, TIME_NOISE, TIME_WIDTHS, Verdict, diff};
 
 fn error(model: &str, value: f64, bound: f64) -> Row {
     let row = Row { study: "agreement".into(), robot: model.into(), engine: "drake".into(), quantity: "fd".into(), ..Row::default() };
     Row { metric: "backward".into(), unit: "1".into(), ..row }.gated(value, Relation::Le, bound)
 }
 
-/// A time with its interval, and the A/A interval of its experiment.
-fn time(value: f64, spread: f64, control: f64) -> Vec<Row> {
-    let row = Row {
-        study: "timing".into(),
-        robot: "panda".into(),
-        quantity: "id".into(),
-        cache: "stream".into(),
-        kind: Kind::Measured,
-        ..Row::default()
-    };
-    let of = |metric: &str| Row { engine: "featherbench".into(), metric: metric.into(), ..row.clone() };
-    vec![
-        of("ns_per_call").measured(value, value * (1.0 - spread), value * (1.0 + spread)),
-        of("control").measured(1.0, 1.0 - control, 1.0 + control),
-    ]
+/// A time with its interval.
+fn time(value: f64, spread: f64) -> Vec<Row> {
+    let row = Row { study: "timing".into(), robot: "panda".into(), quantity: "id".into(), cache: "stream".into(), ..Row::default() };
+    let row = Row { engine: "featherbench".into(), metric: "ns_per_call".into(), kind: Kind::Measured, ..row };
+    vec![row.measured(value, value * (1.0 - spread), value * (1.0 + spread))]
 }
 
 fn changes(before: &[Row], after: &[Row]) -> Vec<Change> {
@@ -30,7 +20,7 @@ fn changes(before: &[Row], after: &[Row]) -> Vec<Change> {
 
 #[test]
 fn a_run_does_not_differ_from_itself() {
-    let rows = [vec![error("a", 1e-15, 1e-14), error("a", 1e-15, 1e-14)], time(100.0, 0.01, 0.01)].concat();
+    let rows = [vec![error("a", 1e-15, 1e-14), error("a", 1e-15, 1e-14)], time(100.0, 0.01)].concat();
     let same = diff(&rows, &rows);
     assert!(same.changes.is_empty());
     assert_eq!(same.compared, rows.len());
@@ -56,26 +46,29 @@ fn verdicts_errors_counts_and_rows() {
 }
 
 #[test]
-fn times_change_beyond_their_intervals_and_the_controls() {
-    let base = time(100.0, 0.005, 0.01);
+fn times_change_beyond_the_noise_and_the_widths_of_their_intervals() {
+    let base = time(100.0, 0.005);
     for (after, expected) in [
-        (time(105.0, 0.005, 0.01), vec![Change::Time]),
-        (time(95.0, 0.005, 0.01), vec![Change::Time]),
-        (time(101.5, 0.001, 0.001), vec![]), // apart, and within the noise that is always there
-        (time(105.0, 0.06, 0.01), vec![]),   // beyond the noise, and the intervals overlap
-        (time(105.0, 0.005, 0.06), vec![]),  // beyond both, but the second run was noisy by its own control
+        (time(105.0, 0.005), vec![Change::Time]),
+        (time(95.0, 0.005), vec![Change::Time]),
+        (time(101.9, 0.001), vec![]), // apart, and within the noise that is always there
+        (time(105.0, 0.06), vec![]),  // beyond the noise, and the intervals overlap
+        (time(105.0, 0.03), vec![]),  // the intervals are apart, but of many rows chance makes one such
     ] {
         assert_eq!(changes(&base, &after), expected, "{:?}", after[0].value);
     }
-    let mut invalid = time(150.0, 0.005, 0.01);
+    // From here on: 2.4 √(h₁² + h₂²), with the half-widths of logarithms.
+    let half = |spread: f64| 0.5 * ((1.0 + spread) / (1.0 - spread)).ln();
+    let edge = 100.0 * (TIME_WIDTHS * half(0.005).hypot(half(0.03))).exp();
+    assert_eq!(changes(&base, &time(edge - 1e-9, 0.03)), []);
+    assert_eq!(changes(&base, &time(edge + 1e-9, 0.03)), [Change::Time]);
+    assert_eq!(changes(&time(edge + 1e-9, 0.03), &base), [Change::Time]);
+    let mut invalid = time(150.0, 0.005);
     invalid[0] = invalid[0].clone().invalid("the machine was not quiet");
     let found = diff(&base, &invalid);
     assert_eq!((found.changes.len(), found.invalid), (0, 1));
     let ratios = |value| {
-        time(value, 0.005, 0.01)
-            .into_iter()
-            .map(|row| Row { metric: row.metric.replace("ns_per_call", "ratio"), ..row })
-            .collect::<Vec<_>>()
+        time(value, 0.005).into_iter().map(|row| Row { metric: row.metric.replace("ns_per_call", "ratio"), ..row }).collect::<Vec<_>>()
     };
     assert_eq!(changes(&ratios(2.0), &ratios(2.2)), [Change::Time]);
 }
@@ -94,12 +87,12 @@ fn measured(metric: &str, value: f64) -> Row {
 #[test]
 fn changes_are_listed_by_kind_and_then_in_the_order_of_the_run() {
     let small = |name: &str| error(name, 1e-15, 1e-14);
-    let before = [vec![small("gone z"), small("gone a"), error("e2", 1e-15, 1.0), error("e1", 1e-15, 1.0)], time(100.0, 0.0, 0.0)].concat();
+    let before = [vec![small("gone z"), small("gone a"), error("e2", 1e-15, 1.0), error("e1", 1e-15, 1.0)], time(100.0, 0.0)].concat();
     let count = |value| Row { study: "operations".into(), unit: "numbers".into(), ..Row::default() }.informed(value);
     let before = [before, vec![count(5.0), error("v", 1e-15, 1e-14)]].concat();
     let after = [
         vec![small("new z"), error("e2", 1e-13, 1.0), small("new a"), error("e1", 1e-13, 1.0)],
-        time(200.0, 0.0, 0.0),
+        time(200.0, 0.0),
         vec![error("v", 1e-13, 1e-14), count(6.0)],
     ]
     .concat();
@@ -118,8 +111,8 @@ fn changes_are_listed_by_kind_and_then_in_the_order_of_the_run() {
         (Change::New, "new a"),
     ];
     assert_eq!(listed, expected);
-    // The errors of two robots, the verdict, the count, and the two rows of the time; all of them valid.
-    assert_eq!((found.compared, found.invalid), (6, 0));
+    // The errors of two robots, the verdict, the count and the time; all of them valid.
+    assert_eq!((found.compared, found.invalid), (5, 0));
 }
 
 /// Rows with the same key are compared one by one, in their order.
@@ -191,36 +184,30 @@ fn errors_move_by_more_than_the_factor_and_above_the_floor() {
     }
 }
 
-/// The noise of an experiment is the larger distance of its A/A interval's ends from one, in either run.
+/// Where all times have a factor in common it is told, and each is compared over it. A ratio has its own.
 #[test]
-fn the_noise_is_the_farther_end_of_the_control() {
-    let with = |value: f64, low: f64, high: f64| {
-        let mut rows = time(value, 0.001, 0.0);
-        for row in &mut rows {
-            if row.metric == "control" {
-                (row.ci_low, row.ci_high) = (Some(low), Some(high));
-            }
-        }
-        rows
+fn what_all_times_have_in_common_is_no_change_of_each() {
+    let many = |factor: f64, planted: f64| -> Vec<Row> {
+        let of = |k: usize| {
+            let mut row = time(100.0 * (1 + k) as f64 * factor * if k == 3 { planted } else { 1.0 }, 0.004).remove(0);
+            row.robot = format!("robot {k}");
+            let ratio = Row { metric: "ratio".into(), ..row.clone() }.measured(2.0 * factor, 2.0 * factor, 2.0 * factor);
+            [row, ratio]
+        };
+        (0..COMMON).flat_map(of).collect()
     };
-    let quiet = with(100.0, 1.0, 1.0);
-    for noisy in [with(110.0, 0.88, 1.01), with(110.0, 0.99, 1.12), with(110.0, 1.0, 1.12), with(110.0, 0.88, 1.0)] {
-        assert_eq!(changes(&quiet, &noisy), [], "10 % and a control of 12 %");
-        assert_eq!(changes(&noisy, &quiet), [], "the first run's control counts as well");
-    }
-    for calm in [with(110.0, 0.92, 1.01), with(110.0, 0.99, 1.08)] {
-        assert_eq!(changes(&quiet, &calm), [Change::Time], "10 % and a control of 8 %");
-        assert_eq!(changes(&calm, &quiet), [Change::Time]);
-    }
-    // An A/A ratio of another robot, quantity or cache belongs to another experiment.
-    let rename: [fn(&mut Row); 3] = [|row| row.robot += "2", |row| row.quantity += "2", |row| row.cache += "2"];
-    for rename in rename {
-        let mut after = with(110.0, 1.0, 1.0);
-        let mut other = with(110.0, 0.5, 1.5);
-        other.iter_mut().for_each(rename);
-        after.extend(other);
-        assert_eq!(changes(&quiet, &after), [Change::Time, Change::New, Change::New]);
-    }
+    let base = many(1.0, 1.0);
+    let slower = many(1.06, 1.0);
+    let found = diff(&base, &slower);
+    assert!((found.common - 1.06).abs() < 1e-12);
+    assert!(found.changes.iter().all(|changed| changed.after.unwrap().metric == "ratio") && found.changes.len() == COMMON);
+    let planted = many(1.06, 1.03);
+    let found = diff(&base, &planted);
+    let times: Vec<_> = found.changes.iter().filter(|changed| changed.after.unwrap().metric == "ns_per_call").collect();
+    assert!(times.len() == 1 && times[0].after.unwrap().robot == "robot 3", "{times:?}");
+    // Too few to say what they have in common.
+    let few = diff(&base[..6], &slower[..6]);
+    assert_eq!((few.common, few.changes.len()), (1.0, 6));
 }
 
 /// Times without intervals are their own intervals; a ratio's interval is that of the ratio.
@@ -238,12 +225,7 @@ fn times_without_intervals_are_compared_as_they_are() {
         assert_eq!(changes(&bare(metric, 100.0), &bare(metric, edge + 1e-9)), [Change::Time]);
         assert_eq!(changes(&bare(metric, edge + 1e-9), &bare(metric, 100.0)), [Change::Time]);
     }
-    // Intervals that touch are not apart.
     let wide = |value: f64, low: f64, high: f64| [measured("ns_per_call", 0.0).measured(value, low, high)];
-    assert_eq!(changes(&wide(100.0, 95.0, 105.0), &wide(110.0, 105.0, 115.0)), []);
-    assert_eq!(changes(&wide(110.0, 105.0, 115.0), &wide(100.0, 95.0, 105.0)), []);
-    assert_eq!(changes(&wide(100.0, 95.0, 105.0), &wide(110.0, 105.1, 115.0)), [Change::Time]);
-    assert_eq!(changes(&wide(110.0, 105.1, 115.0), &wide(100.0, 95.0, 105.0)), [Change::Time]);
     // The interval of a time is not that of its ratio.
     let ratio = |value: f64| [bare("ratio", value), wide(1.0, 0.0, 1e9).to_vec()].concat();
     assert_eq!(changes(&ratio(1.0), &ratio(2.0)), [Change::Time]);
@@ -253,24 +235,22 @@ fn times_without_intervals_are_compared_as_they_are() {
 #[test]
 fn invalid_times_are_counted_and_not_compared() {
     let invalid = |value: f64| {
-        let mut rows = time(value, 0.005, 0.01);
+        let mut rows = time(value, 0.005);
         rows[0] = rows[0].clone().invalid("the machine was not quiet");
         rows
     };
-    for (before, after) in
-        [(invalid(100.0), time(150.0, 0.005, 0.01)), (time(100.0, 0.005, 0.01), invalid(150.0)), (invalid(100.0), invalid(150.0))]
-    {
+    for (before, after) in [(invalid(100.0), time(150.0, 0.005)), (time(100.0, 0.005), invalid(150.0)), (invalid(100.0), invalid(150.0))] {
         let found = diff(&before, &after);
         assert_eq!((found.changes.len(), found.invalid, found.compared), (0, 1, before.len()));
     }
     // No program reads the reason.
-    let mut mentioned = time(150.0, 0.005, 0.01);
+    let mut mentioned = time(150.0, 0.005);
     mentioned[0].reason = "invalid: the machine was not quiet".into();
-    assert_eq!(changes(&time(100.0, 0.005, 0.01), &mentioned), [Change::Time]);
-    let mut failed = time(100.0, 0.005, 0.01);
+    assert_eq!(changes(&time(100.0, 0.005), &mentioned), [Change::Time]);
+    let mut failed = time(100.0, 0.005);
     failed[0] = failed[0].clone().without_value(Verdict::Error, "it broke");
-    assert_eq!(changes(&time(100.0, 0.005, 0.01), &failed), [Change::Verdict]);
-    assert_eq!(changes(&failed, &time(100.0, 0.005, 0.01)), [Change::Verdict]);
+    assert_eq!(changes(&time(100.0, 0.005), &failed), [Change::Verdict]);
+    assert_eq!(changes(&failed, &time(100.0, 0.005)), [Change::Verdict]);
 }
 
 /// A NaN is not a small value: NaN.max(x) is x.
@@ -281,7 +261,7 @@ fn no_number_is_lost() {
     assert_eq!(changes(std::slice::from_ref(&error), &[lost(&error)]), [Change::Error]);
     assert_eq!(changes(&[lost(&error)], std::slice::from_ref(&error)), [Change::Error]);
     assert_eq!(changes(&[lost(&error)], &[lost(&error)]), [], "it was lost before");
-    let base = time(100.0, 0.005, 0.01);
+    let base = time(100.0, 0.005);
     let without = |place: usize, rows: &[Row]| {
         let mut rows = rows.to_vec();
         rows[place] = lost(&rows[place]);
@@ -289,16 +269,14 @@ fn no_number_is_lost() {
     };
     assert_eq!(changes(&base, &without(0, &base)), [Change::Time]);
     assert_eq!(changes(&without(0, &base), &base), [Change::Time]);
-    // If an end of the A/A interval is NaN, the noise is not known, in either run and at either end: the time is not compared.
+    // If an end of an interval is NaN, the noise is not known, in either run and at either end: the time is not compared.
     let lost_end = |low: bool, rows: &[Row]| {
         let mut rows = rows.to_vec();
-        let control = &mut rows[1];
-        *(if low { &mut control.ci_low } else { &mut control.ci_high }) = Some(f64::NAN);
+        *(if low { &mut rows[0].ci_low } else { &mut rows[0].ci_high }) = Some(f64::NAN);
         rows
     };
     for low in [true, false] {
-        for (before, after) in [(base.clone(), lost_end(low, &time(150.0, 0.005, 0.01))), (lost_end(low, &base), time(150.0, 0.005, 0.01))]
-        {
+        for (before, after) in [(base.clone(), lost_end(low, &time(150.0, 0.005))), (lost_end(low, &base), time(150.0, 0.005))] {
             let found = diff(&before, &after);
             assert_eq!((found.changes.len(), found.invalid), (0, 1), "low {low}");
         }

@@ -218,7 +218,7 @@ pub(crate) fn to_message(id: &str, cell: &Cell, outcome: &Outcome, seconds: Opti
 const CHECKSUM: &str = "blake3";
 
 /// The cell and its outcome, or what is wrong with the entry, whose bytes these are.
-fn from_message(mut entry: Message, bytes: &[u8]) -> Result<(String, Outcome), String> {
+pub(crate) fn from_message(mut entry: Message, bytes: &[u8]) -> Result<(String, Outcome), String> {
     // JSON has several spellings of a value, and the checksum is that of one: 1E-5 for 1e-5 is damage that it does not see.
     if entry.to_bytes() != bytes {
         return Err("it is spelled in another way: it is damaged".into());

@@ -7,12 +7,14 @@ pub(crate) mod entries;
 mod fingerprint;
 mod offers;
 pub mod params;
+mod processes;
 pub mod provenance;
 pub mod shard;
 pub(crate) mod store;
 pub(crate) mod study;
 
 pub use crate::run::fingerprint::{FINGERPRINT_NAME, shard_of};
+pub use crate::run::processes::{NewProcess, answer};
 
 use crate::run::fingerprint::SHARD;
 use crate::run::study::{Asked, Context, Finished, Study, by_robot};
@@ -82,6 +84,8 @@ pub struct Run {
     pub folder: PathBuf,
     /// What its rows share. The id is the folder's name.
     pub info: RunInfo,
+    /// How a new process is started for cells that ask for one. Without it they are evaluated in this one.
+    pub new_process: Option<Box<dyn NewProcess>>,
     /// The names of the files that studies left beside the rows.
     files: Vec<&'static str>,
 }
@@ -134,7 +138,7 @@ impl Run {
             _ => {}
         }
         let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        Ok(Self { folder: folder.to_owned(), info: RunInfo { run: id, ..info }, files: Vec::new() })
+        Ok(Self { folder: folder.to_owned(), info: RunInfo { run: id, ..info }, new_process: None, files: Vec::new() })
     }
 
     /// Plans, evaluates and compares study after study. The outcomes are kept in the folder as they come.
@@ -181,7 +185,7 @@ impl Run {
             let mut cells = plan(study.as_ref(), context, keep);
             cells.retain(|cell| mine.contains(&cell.id()));
             if !cells.is_empty() {
-                complete(study.as_ref(), context, &cells, &store, progress)?;
+                complete(study.as_ref(), context, &cells, &store, progress, self.new_process.as_deref())?;
             }
         }
         Ok(())
@@ -210,7 +214,7 @@ impl Run {
             let engines: BTreeSet<String> = whole.iter().map(|cell| cell.engine.clone()).collect();
             let cells = kept(study.as_ref(), whole, keep);
             if let Some(progress) = progress {
-                complete(study.as_ref(), context, &cells, &store, progress)?;
+                complete(study.as_ref(), context, &cells, &store, progress, self.new_process.as_deref())?;
             }
             if study.compares_all() {
                 let finished = outcomes(cells, &store)?;
@@ -264,20 +268,23 @@ pub fn evaluate(
     store: &OutcomeStore,
     progress: &dyn Progress,
 ) -> Result<Vec<Finished>, HarnessError> {
-    complete(study, context, &cells, store, progress)?;
+    complete(study, context, &cells, store, progress, None)?;
     outcomes(cells, store)
 }
 
-/// Evaluates the unfinished cells of a study.
+/// Evaluates the unfinished cells of a study: first those of this process, then those of new ones, process by process.
 fn complete(
     study: &dyn Study,
     context: &Context,
     cells: &[Cell],
     store: &OutcomeStore,
     progress: &dyn Progress,
+    new_process: Option<&dyn NewProcess>,
 ) -> Result<(), HarnessError> {
     let missing: Vec<&Cell> = cells.iter().filter(|cell| !store.contains(&cell.id())).collect();
     progress.begin(study.name(), missing.len());
+    let apart = |cell: &&Cell| new_process.is_some() && study.process(cell).is_some();
+    let (mut apart, missing): (Vec<&Cell>, Vec<&Cell>) = missing.into_iter().partition(apart);
     // One group per robot and engine, so that a process behind an engine builds each robot once.
     let mut groups: Vec<Vec<&Cell>> = Vec::new();
     for cell in missing {
@@ -301,6 +308,16 @@ fn complete(
         groups.iter().try_for_each(work)?
     } else {
         groups.par_iter().with_max_len(1).try_for_each(work)?
+    }
+    apart.sort_by_cached_key(|cell| study.process(cell));
+    if let Some(new_process) = new_process {
+        for cells in apart.chunk_by(|a, b| study.process(a) == study.process(b)) {
+            progress.cell(cells[0]);
+            processes::evaluate(new_process.command(study.name()), cells, &mut |cell, outcome, took| {
+                progress.done(cell, outcome);
+                store.insert_after(cell, outcome, took)
+            })?;
+        }
     }
     progress.end();
     Ok(())

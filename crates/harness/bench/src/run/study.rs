@@ -138,6 +138,11 @@ pub trait Study: Sync {
         false
     }
 
+    /// The number of the process in which a cell is evaluated, if it must be a new one. Cells of the same number share theirs.
+    fn process(&self, _cell: &Cell) -> Option<usize> {
+        None
+    }
+
     /// Evaluates one cell.
     fn evaluate(&self, asked: &Asked) -> Outcome;
 

@@ -25,6 +25,7 @@ use crate::timing::protocol::{Budget, Ready, experiment};
 use crate::timing::samples::Samples;
 use candidates::{Candidate, Landed, SOLVERS, Told};
 use featherbench_answers::contact::standing::Stand;
+use featherbench_bench::statistics::PROCESSES;
 use featherbench_bench::{Asked, Cell, Context, Finished, NoAnswer, OWN, Outcome, Study};
 use featherbench_results::Row;
 use featherbench_robots::Random;
@@ -42,7 +43,7 @@ pub struct ContactTiming {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Settings {
-    /// Seconds for each candidate in each experiment.
+    /// Seconds for each candidate in each experiment, of all its processes together.
     seconds: f64,
     /// The engines that are timed beside ours if they are installed.
     #[serde(default)]
@@ -82,11 +83,17 @@ impl ContactTiming {
         own.chain([control]).chain(others).map(|candidate| Candidate { version: version(&candidate.engine), ..candidate }).collect()
     }
 
-    fn cell(&self, context: &Context, stand: Stand) -> Option<Cell> {
-        let identity = context.engine(OWN)?.identity();
+    /// The cells of an experiment: one for each of its processes.
+    fn cells(&self, context: &Context, stand: Stand) -> Vec<Cell> {
+        let Some(own) = context.engine(OWN) else { return Vec::new() };
+        let identity = own.identity();
         let of_robot = OfRobot { contacts: stand.contacts(), rank: stand.rank(), seconds: self.settings.seconds, own_model: None };
-        let params = Params { of_robot, seed: context.seed, target: TARGET, candidates: self.candidates(context, stand) };
-        Some(Cell::of_case(STUDY, &stand.name(), (&identity.name, &identity.version), QUANTITY, SOLVERS[0], params))
+        let candidates = self.candidates(context, stand);
+        let of_process = |process| {
+            let params = Params { of_robot: of_robot.clone(), seed: context.seed, target: TARGET, process, candidates: candidates.clone() };
+            Cell::of_case(STUDY, &stand.name(), (&identity.name, &identity.version), QUANTITY, SOLVERS[0], params)
+        };
+        (0..PROCESSES).map(of_process).collect()
     }
 
     fn measured(&self, &Asked { context, cell, .. }: &Asked) -> Result<Measured, NoAnswer> {
@@ -100,7 +107,8 @@ impl ContactTiming {
         let mut random = Random::named(context.seed, &cell.id());
         let start = Instant::now();
         let clock = || start.elapsed();
-        let samples = experiment(&prepare, candidates.len(), landed.problems.len(), Budget::of(self.settings.seconds), &clock, &mut random);
+        let budget = Budget::of(self.settings.seconds / PROCESSES as f64);
+        let samples = experiment(&prepare, candidates.len(), landed.problems.len(), budget, &clock, &mut random);
         let told = chosen.into_iter().map(|chosen| chosen.unwrap_or(Told::NONE)).collect();
         Ok(Measured { problems: landed.problems.len() as f64, told, samples })
     }
@@ -113,6 +121,8 @@ struct Params {
     of_robot: OfRobot,
     seed: u64,
     target: f64,
+    /// Which of the processes this is.
+    process: usize,
     /// In the order of the samples.
     candidates: Vec<Candidate>,
 }
@@ -174,7 +184,11 @@ impl Study for ContactTiming {
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
-        Stand::ALL.into_iter().filter_map(|stand| self.cell(context, stand)).collect()
+        Stand::ALL.into_iter().flat_map(|stand| self.cells(context, stand)).collect()
+    }
+
+    fn process(&self, cell: &Cell) -> Option<usize> {
+        cell.params::<Params>().ok().map(|params| params.process)
     }
 
     fn evaluate(&self, asked: &Asked) -> Outcome {
@@ -182,7 +196,7 @@ impl Study for ContactTiming {
     }
 
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
-        finished.iter().flat_map(|(cell, outcome)| rows::rows(context.gates, cell, outcome)).collect()
+        finished.chunk_by(|(a, _), (b, _)| a.robot == b.robot).flat_map(|processes| rows::rows(context.gates, processes)).collect()
     }
 }
 

@@ -3,31 +3,36 @@
 use super::candidates::{Candidate, Told, WHOLE};
 use super::{Measured, OfRobot, Params, TARGET};
 use crate::timing::rows::{estimated, judged};
-use featherbench_bench::statistics::{CONTROL_LEVEL, Estimate, LEVEL};
-use featherbench_bench::{Cell, Gates, NoAnswer, Outcome, params};
+use crate::timing::samples::Processes;
+use featherbench_bench::statistics::Estimate;
+use featherbench_bench::{Finished, Gates, NoAnswer, params};
 use featherbench_results::{Kind, Relation, Row, Verdict};
-use featherbench_robots::Random;
 use featherbench_study::{case_row, unanswered};
 
-/// All rows of a cell.
-pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
+/// All rows of an experiment, whose processes these are. What is no time is the same in each of them.
+pub(super) fn rows(gates: &Gates, processes: &[Finished]) -> Vec<Row> {
+    let Some((cell, _)) = processes.first() else { return Vec::new() };
     let parts = || -> Result<_, NoAnswer> {
         let Params { of_robot, candidates, .. } = cell.params()?;
-        let measured = Measured::from_values(outcome.answer()?, candidates.len());
-        Ok((of_robot, candidates, measured.ok_or_else(|| NoAnswer::Failed("the outcome holds no samples".into()))?))
+        let of = |(_, outcome): &Finished| {
+            let measured = Measured::from_values(outcome.answer()?, candidates.len());
+            measured.ok_or_else(|| NoAnswer::Failed("the outcome holds no samples".into()))
+        };
+        let mut measured = processes.iter().map(of).collect::<Result<Vec<_>, _>>()?;
+        let samples = Processes(measured.iter().map(|measured| measured.samples.clone()).collect());
+        Ok((of_robot, candidates, measured.swap_remove(0), samples))
     };
     let params = cell.params::<OfRobot>().map(|params| params::text(&params)).unwrap_or_default();
     let blank = Row { params, ..case_row(cell) };
-    let (of_robot, candidates, measured) = match parts() {
+    let (of_robot, candidates, measured, samples) = match parts() {
         Ok(parts) => parts,
         Err(no_answer) => return vec![unanswered(blank, &no_answer, Verdict::Error)],
     };
-    let random = |what: &str| Random::named(0, &format!("{} {what}", cell.id()));
-    let samples = &measured.samples;
     let control = candidates.iter().position(|candidate| candidate.control).map(|which| {
-        let ratio = Estimate::ratio(samples.of(which), samples.of(0), CONTROL_LEVEL, &mut random("control"));
+        let ratio = samples.ratio(which, 0);
         (ratio, ratio.complaint())
     });
+    let widened = |ratio: Estimate| control.as_ref().map_or(ratio, |(control, _)| ratio.widened(control));
     let noise = match &control {
         Some((_, complaint)) => complaint.clone(),
         None => Some("the experiment has no A/A control".to_owned()),
@@ -69,21 +74,19 @@ pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
         } else {
             rows.push(gates.explain(row.gated(residual, Relation::Le, TARGET)));
         }
-        let ns = samples.of(which);
         let timed = of("ns_per_call", "ns", Kind::Measured);
-        if ns.iter().any(|ns| ns.is_nan()) {
+        if !samples.answered(which) {
             rows.push(timed.without_value(Verdict::Error, "it stopped answering while it was timed"));
             continue;
         }
-        let name = format!("{} {}", candidate.engine, candidate.method);
-        rows.push(judged(estimated(timed, &Estimate::median(ns, LEVEL, &mut random(&name))), noise));
+        rows.push(judged(estimated(timed, &samples.time(which)), noise));
         if let Some(whole) = whole.filter(|_| own) {
             // From M and J on, as the engine's: but another model at another residual, so by a name of its own.
-            let ratio = Estimate::ratio(ns, samples.of(whole), LEVEL, &mut random(&format!("{name} ratio")));
+            let ratio = widened(samples.ratio(which, whole));
             let row = Row { reference: format!("{} {WHOLE}", cell.engine), ..of("own_model_ratio", "1", Kind::Measured) };
             rows.push(judged(estimated(row, &ratio), noise));
         } else if which > 0 && !own {
-            let ratio = Estimate::ratio(ns, samples.of(0), LEVEL, &mut random(&format!("{name} ratio")));
+            let ratio = widened(samples.ratio(which, 0));
             let row = Row { reference: usual.clone(), ..of("ratio", "1", Kind::Measured) };
             rows.push(judged(estimated(row, &ratio), noise));
         }

@@ -6,7 +6,7 @@ use serde_json::json;
 fn cell(candidates: &[(&str, &str, bool)]) -> Cell {
     let of = |(engine, method, control): &(&str, &str, bool)| Candidate::new(engine, method, *control);
     let of_robot = OfRobot { contacts: 4, rank: 12, seconds: 1.0, own_model: None };
-    let params = Params { of_robot, seed: 1, target: TARGET, candidates: candidates.iter().map(of).collect() };
+    let params = Params { of_robot, seed: 1, target: TARGET, process: 0, candidates: candidates.iter().map(of).collect() };
     Cell::of_case(STUDY, "quadruped, 4 contacts", ("featherbench", "1"), QUANTITY, SOLVERS[0], params)
 }
 
@@ -28,6 +28,11 @@ fn outcome(ns: [f64; 4], told: [[f64; 3]; 4]) -> Outcome {
     Outcome::Values(std::iter::once(3.0).chain(told.into_iter().flatten()).chain(samples.to_values()).collect())
 }
 
+/// The rows of an experiment whose processes all have this outcome.
+fn rows_of(cell: &Cell, outcome: Outcome) -> Vec<Row> {
+    rows::rows(&gates(""), &vec![(cell.clone(), outcome); PROCESSES])
+}
+
 fn find<'r>(rows: &'r [Row], engine: &str, metric: &str) -> Option<&'r Row> {
     rows.iter().find(|row| row.engine == engine && row.metric == metric)
 }
@@ -36,7 +41,7 @@ const GOOD: [[f64; 3]; 4] = [[1e-8, 9e-9, f64::NAN]; 4];
 
 #[test]
 fn ratios_are_over_the_reference() {
-    let rows = rows::rows(&gates(""), &cell(&FOUR), &outcome([100.0, 300.0, 100.0, 250.0], GOOD));
+    let rows = rows_of(&cell(&FOUR), outcome([100.0, 300.0, 100.0, 250.0], GOOD));
     let ratio = find(&rows, "peer", "ratio").unwrap();
     assert_eq!((ratio.value, ratio.ci_low, ratio.valid), (Some(2.5), Some(2.5), true));
     assert_eq!(find(&rows, "featherbench", "control").unwrap().value, Some(1.0));
@@ -46,11 +51,11 @@ fn ratios_are_over_the_reference() {
 
 #[test]
 fn a_noisy_experiment_has_no_valid_time() {
-    let rows = rows::rows(&gates(""), &cell(&FOUR), &outcome([100.0, 300.0, 110.0, 250.0], GOOD));
+    let rows = rows_of(&cell(&FOUR), outcome([100.0, 300.0, 110.0, 250.0], GOOD));
     let times: Vec<&Row> = rows.iter().filter(|row| ["ns_per_call", "ratio", "control"].contains(&row.metric.as_str())).collect();
     assert!(times.len() == 6 && times.iter().all(|row| !row.valid), "{times:?}");
     let alone = cell(&FOUR[..2]);
-    let uncontrolled = rows::rows(&gates(""), &alone, &Outcome::Values(vec![]));
+    let uncontrolled = rows_of(&alone, Outcome::Values(vec![]));
     assert_eq!(uncontrolled[0].verdict, Verdict::Error);
 }
 
@@ -59,16 +64,16 @@ fn an_answer_that_is_not_good_enough_has_no_time() {
     let mut told = GOOD;
     told[3] = Told::NONE.to_values();
     let nothing = outcome([100.0, 300.0, 100.0, f64::NAN], told);
-    let rows_of_peer = rows::rows(&gates(""), &cell(&FOUR), &nothing);
+    let rows_of_peer = rows_of(&cell(&FOUR), nothing);
     assert_eq!(find(&rows_of_peer, "peer", "residual").unwrap().verdict, Verdict::Info);
     assert!(find(&rows_of_peer, "peer", "ns_per_call").is_none());
     told = GOOD;
     told[0] = Told::NONE.to_values();
-    let ours = rows::rows(&gates(""), &cell(&FOUR), &outcome([100.0; 4], told));
+    let ours = rows_of(&cell(&FOUR), outcome([100.0; 4], told));
     assert_eq!(find(&ours, "featherbench", "residual").unwrap().verdict, Verdict::Error);
     told = GOOD;
     told[0][1] = 2e-8;
-    let ours = rows::rows(&gates(""), &cell(&FOUR), &outcome([100.0; 4], told));
+    let ours = rows_of(&cell(&FOUR), outcome([100.0; 4], told));
     assert_eq!(find(&ours, "featherbench", "residual").unwrap().verdict, Verdict::Fail);
 }
 
@@ -85,7 +90,7 @@ fn an_own_model_is_told_apart() {
     cell.params["candidates"][3]["own_model"] = json!({"model": "soft", "limit": "soft_newton", "time": "all"});
     let mut told = GOOD;
     told[3] = [1e-6, 0.3, 4e-9];
-    let rows = rows::rows(&gates(""), &cell, &outcome([100.0, 200.0, 100.0, 250.0], told));
+    let rows = rows_of(&cell, outcome([100.0, 200.0, 100.0, 250.0], told));
     let residual = find(&rows, "peer", "residual").unwrap();
     assert_eq!((residual.value, residual.verdict), (Some(0.3), Verdict::Info));
     assert!(residual.params.contains("\"model\":\"soft\""));
@@ -94,7 +99,7 @@ fn an_own_model_is_told_apart() {
     let ratio = find(&rows, "peer", "own_model_ratio").unwrap();
     assert_eq!((ratio.value, ratio.reference.as_str()), (Some(1.25), "featherbench block_gauss_seidel_whole"));
     told[3] = Told::NONE.to_values();
-    let rows = rows::rows(&gates(""), &cell, &outcome([100.0, 200.0, 100.0, f64::NAN], told));
+    let rows = rows_of(&cell, outcome([100.0, 200.0, 100.0, f64::NAN], told));
     assert!(find(&rows, "peer", "residual").unwrap().reason.contains("its own model"));
 }
 

@@ -4,7 +4,6 @@ use super::rows::{Check, Experiment, RowParams, estimated, judged};
 use super::samples::Candidate;
 use super::{BEST_OTHER, REFERENCE};
 use featherbench_bench::params;
-use featherbench_bench::statistics::{Estimate, LEVEL, quantile_of};
 use featherbench_results::Row;
 
 impl Experiment<'_> {
@@ -14,8 +13,7 @@ impl Experiment<'_> {
     pub(super) fn beside(&self, best_of: &[String], checks: &[Check], noise: Option<&str>) -> Vec<Row> {
         let Ok(samples) = &self.samples else { return Vec::new() };
         let complaint = |candidate: &Candidate| Check::complaint(Check::find(checks, candidate));
-        let answers = |which: &usize| !samples.of(*which).iter().any(|ns| ns.is_nan());
-        let all = || (0..self.candidates.len()).filter(answers);
+        let all = || (0..self.candidates.len()).filter(|&which| samples.answered(which));
         let others: Vec<usize> = all()
             .filter(|&which| best_of.contains(&self.candidates[which].engine) && complaint(&self.candidates[which]).is_none())
             .collect();
@@ -24,15 +22,8 @@ impl Experiment<'_> {
         let mut rows = Vec::new();
         for which in all().filter(|&which| self.candidates[which].engine == REFERENCE && !self.candidates[which].control) {
             let own = &self.candidates[which];
-            // The bootstrap, which takes milliseconds, is made of the fastest one alone.
-            let median = |other: usize| {
-                let ratios: Vec<f64> = samples.of(other).iter().zip(samples.of(which)).map(|(other, own)| other / own).collect();
-                quantile_of(&ratios, 0.5)
-            };
-            let medians = others.iter().map(|&other| (other, median(other)));
-            let Some((other, _)) = medians.min_by(|(_, a), (_, b)| a.total_cmp(b)) else { continue };
-            let name = format!("{} {} beside {}", own.method, own.quantity, named(other));
-            let ratio = Estimate::ratio(samples.of(other), samples.of(which), LEVEL, &mut self.random(&name));
+            let ratios = others.iter().map(|&other| (other, self.ratio(samples, other, which)));
+            let Some((other, ratio)) = ratios.min_by(|(_, a), (_, b)| a.value.total_cmp(&b.value)) else { continue };
             let params = RowParams { others: Some(others.iter().map(|&other| named(other)).collect()), ..self.params.clone() };
             let blank = Row {
                 engine: own.engine.clone(),

@@ -9,7 +9,7 @@
 //! - the *machine*: its peak, its clock, an empty call;
 //! - a *check* for each candidate: the error of its answer at every state of the stream;
 //! - the *overhead* of calling it, if its times are estimates;
-//! - an *experiment* for each quantity and cache regime: all blocks of all rounds.
+//! - an *experiment* for each quantity and cache regime: all blocks of all rounds, in a cell for each of its processes.
 //!
 //! A pure function makes rows of them. A time does not count in three cases: without a good check; in an experiment whose A/A replicate
 //! differs from the first copy; and on a robot with many such experiments. These rows keep their values, are not valid and give the reason.
@@ -24,6 +24,7 @@ pub(crate) mod samples;
 pub(crate) mod section;
 pub(crate) mod words;
 
+use featherbench_bench::statistics::PROCESSES;
 use featherbench_bench::{Asked, Cell, Context, Engine, Finished, HarnessError, NoAnswer, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_results::Row;
 use featherbench_robots::{Random, StateBatch};
@@ -50,7 +51,7 @@ pub struct Timing {
 pub struct Settings {
     /// Distinct states in the stream.
     pub states: usize,
-    /// Seconds for each candidate in each experiment.
+    /// Seconds for each candidate in each experiment, of all its processes together.
     pub seconds: f64,
     /// The engines that are timed beside ours if they are installed, by all their methods for the quantities of our kernels: native
     /// oracles, and oracles whose clock estimates.
@@ -123,7 +124,10 @@ enum CellKind {
 struct Paired {
     cache: String,
     states: usize,
+    /// Of all processes together.
     seconds: f64,
+    /// Which of the processes this is.
+    process: usize,
     candidates: Vec<Candidate>,
 }
 
@@ -163,10 +167,14 @@ impl Study for Timing {
         matches!(cell.params(), Ok(CellKind::Machine))
     }
 
-    /// The time that each candidate is given; other cells take about as long as one candidate.
+    /// The time that each candidate is given; other cells take about as long as one candidate in one process.
     fn seconds(&self, _: &Context, cell: &Cell) -> f64 {
         let candidates = Paired::of(cell).map_or(1, |paired| paired.candidates.len());
-        self.settings.seconds * candidates as f64
+        self.settings.seconds * candidates as f64 / PROCESSES as f64
+    }
+
+    fn process(&self, cell: &Cell) -> Option<usize> {
+        Paired::of(cell).map(|paired| paired.process)
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
@@ -192,8 +200,11 @@ impl Study for Timing {
                 let timed: Vec<Candidate> = timed.cloned().collect();
                 for regime in REGIMES {
                     let states = if regime == "hot" { 1 } else { states };
-                    let paired = Paired { cache: regime.into(), states, seconds: self.settings.seconds, candidates: timed.clone() };
-                    cells.push(self.cell(robot, featherbench, quantity, &usual.method, CellKind::Experiment(paired)));
+                    cells.extend((0..PROCESSES).map(|process| {
+                        let Settings { seconds, .. } = self.settings;
+                        let paired = Paired { cache: regime.into(), states, seconds, process, candidates: timed.clone() };
+                        self.cell(robot, featherbench, quantity, &usual.method, CellKind::Experiment(paired))
+                    }));
                 }
             }
         }
@@ -250,7 +261,7 @@ impl Timing {
                 let mut random = Random::named(context.seed, &cell.id());
                 let start = Instant::now();
                 let clock = || start.elapsed();
-                let budget = Budget::of(self.settings.seconds);
+                let budget = Budget::of(self.settings.seconds / PROCESSES as f64);
                 Ok(protocol::experiment(&prepare, candidates.len(), count, budget, &clock, &mut random).to_values())
             }
         }

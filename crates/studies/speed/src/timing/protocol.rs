@@ -1,4 +1,4 @@
-//! The experiment: candidates in alternating blocks.
+//! The part of an experiment that one process makes: candidates in alternating blocks.
 //!
 //! Rounds are grouped into *epochs*. At the start of an epoch all candidates relocate their data, in random order, each in its own process.
 //! The place of data in memory changes a time by up to some percent, and a ratio from one layout would depend on chance.
@@ -13,7 +13,6 @@ use super::samples::Samples;
 use featherbench_bench::statistics::EPOCHS;
 use featherbench_bench::{Evaluation, NoAnswer, Relocation};
 use featherbench_robots::Random;
-use std::collections::VecDeque;
 use std::time::Duration;
 
 /// The shortest block. It is some thousand times the clock's resolution and the cost of reading it. It is so short that most blocks are not
@@ -27,10 +26,6 @@ const WARM: usize = 10;
 const MOST_CALLS: usize = 1 << 24;
 /// A block is long enough if it was so in each of these trials. One alone may include a stall, and then all blocks would be too short.
 const TRIALS: usize = 3;
-/// The last relocations; the shortest of them is taken as the time of one.
-const LAST_MOVES: usize = 5;
-/// Epochs at which all candidates relocate, however long that took before: each of the earlier times may include a stall.
-const AGAIN: [usize; 2] = [1, 8];
 
 /// A candidate that is ready to run, or why it is not.
 pub(crate) type Ready<'a> = Result<Box<dyn Evaluation + 'a>, NoAnswer>;
@@ -45,7 +40,7 @@ pub(crate) struct Budget {
 }
 
 impl Budget {
-    /// The budget for `seconds` for each candidate.
+    /// The budget for `seconds` for each candidate in this process.
     pub fn of(seconds: f64) -> Self {
         let epoch = seconds / EPOCHS as f64;
         let rounds = ((epoch / BLOCK.as_secs_f64()) as usize).clamp(1, MOST_ROUNDS);
@@ -66,23 +61,6 @@ impl Budget {
     }
 }
 
-/// The times of a candidate's last relocations; its preparation is the first.
-struct Moves(VecDeque<Duration>);
-
-impl Moves {
-    fn took(&mut self, time: Duration) {
-        if self.0.len() == LAST_MOVES {
-            self.0.pop_front();
-        }
-        self.0.push_back(time);
-    }
-
-    /// Whether the candidate relocates its data at an epoch.
-    fn are_due(&self, epoch: usize, budget: Budget) -> bool {
-        AGAIN.contains(&epoch) || self.0.iter().min().is_some_and(|&least| budget.affords(least))
-    }
-}
-
 /// Times `count` candidates over a batch of `states` states. `prepare` makes one of them ready; `clock` gives the time since some moment.
 /// After an error a candidate's times are NaN.
 pub(crate) fn experiment<'a>(
@@ -93,12 +71,13 @@ pub(crate) fn experiment<'a>(
     clock: &dyn Fn() -> Duration,
     random: &mut Random,
 ) -> Samples {
+    // The shortest relocation of each so far; its preparation is the first. One alone may include a stall: then it moves in other processes.
     let (mut calls, mut moves, mut round_time) = (Vec::with_capacity(count), Vec::with_capacity(count), Duration::ZERO);
     let mut candidates: Vec<Ready> = Vec::with_capacity(count);
     for which in 0..count {
         let start = clock();
         let mut candidate = prepare(which);
-        moves.push(Moves(VecDeque::from([clock().saturating_sub(start)])));
+        moves.push(clock().saturating_sub(start));
         let (of_block, time) = calls_of_a_block(&mut candidate, budget.block);
         calls.push(of_block);
         round_time += time;
@@ -110,10 +89,10 @@ pub(crate) fn experiment<'a>(
     for epoch in 0..EPOCHS {
         shuffle(&mut order, random);
         for &which in order.iter().filter(|_| epoch > 0) {
-            if moves[which].are_due(epoch, budget) {
+            if budget.affords(moves[which]) {
                 let start = clock();
                 relocate(&mut candidates[which], &|| prepare(which), random);
-                moves[which].took(clock().saturating_sub(start));
+                moves[which] = moves[which].min(clock().saturating_sub(start));
             }
         }
         for round in epoch * rounds..(epoch + 1) * rounds {
@@ -231,7 +210,7 @@ mod tests {
         }
     }
 
-    const BUDGET: Budget = Budget { rounds: 4, block: Duration::from_micros(200) };
+    const BUDGET: Budget = Budget { rounds: 40, block: Duration::from_micros(200) };
 
     /// The samples and the log of candidates with these times of a call, each failing after this number of blocks.
     fn scripted(candidates: &[(Duration, usize)]) -> (Samples, Vec<(usize, Range<usize>)>) {
@@ -304,27 +283,21 @@ mod tests {
         moves
     }
 
-    /// A stall of the machine during one relocation, at any epoch, does not end the relocations of a candidate. A candidate that takes long
-    /// at each of them relocates twice. One that takes long from some epoch on stops when that is clear.
+    /// A stall of the machine during a relocation does not end the relocations of a candidate. One whose preparation takes long stays where it is.
     #[test]
     fn a_stall_costs_no_move() {
         const SLOW: Duration = Duration::from_secs(1);
         assert!(!BUDGET.affords(SLOW) && BUDGET.affords(Duration::ZERO));
-        let slow: [Script; 7] = [
+        let slow: [Script; 4] = [
             |_| Duration::ZERO,
-            |epoch| if epoch == 0 { SLOW } else { Duration::ZERO },
-            |epoch| if epoch == 30 { SLOW } else { Duration::ZERO },
-            |epoch| if epoch % LAST_MOVES > 0 { SLOW } else { Duration::ZERO },
-            |epoch| if epoch < 8 { SLOW } else { Duration::ZERO },
-            |epoch| if epoch >= 20 { SLOW } else { Duration::ZERO },
+            |epoch| if epoch == 3 { SLOW } else { Duration::ZERO },
+            |epoch| if epoch > 0 { SLOW } else { Duration::ZERO },
             |_| SLOW,
         ];
         let all: Vec<usize> = (1..EPOCHS).collect();
-        let [quick, at_first, once, often, late_to_settle, from_some_move_on, always] = epochs_of_moves(slow);
-        assert_eq!([&quick, &at_first, &once, &often], [&all; 4]);
-        assert_eq!(late_to_settle, [&[1], &all[7..]].concat());
-        assert_eq!(from_some_move_on, all[..20 + LAST_MOVES - 1]);
-        assert_eq!(always, [1, 8]);
+        let [quick, once, but_for_the_first, always] = epochs_of_moves(slow);
+        assert_eq!([&quick, &once, &but_for_the_first], [&all; 3]);
+        assert!(always.is_empty(), "{always:?}");
     }
 
     /// A stall while the length of a block is determined does not change it.
@@ -433,10 +406,10 @@ mod tests {
     #[test]
     fn seconds_become_rounds_and_then_longer_blocks() {
         assert_eq!(Budget::of(0.0), Budget { rounds: 1, block: BLOCK });
-        assert_eq!(Budget::of(0.02), Budget { rounds: 1, block: Duration::from_secs_f64(0.02 / 60.0) });
-        assert_eq!(Budget::of(0.3), Budget { rounds: MOST_ROUNDS, block: Duration::from_millis(1) });
-        let rounds = |millis, count| Budget::of(0.3).rounds_of(Duration::from_millis(millis), count);
+        assert_eq!(Budget::of(0.002), Budget { rounds: 1, block: Duration::from_secs_f64(0.002 / 6.0) });
+        assert_eq!(Budget::of(0.03), Budget { rounds: MOST_ROUNDS, block: Duration::from_millis(1) });
+        let rounds = |millis, count| Budget::of(0.03).rounds_of(Duration::from_millis(millis), count);
         assert_eq!([rounds(4, 4), rounds(8, 4), rounds(16, 4), rounds(1000, 4)], [5, 5, 2, 1]);
-        assert!(Budget::of(0.3).affords(Duration::from_millis(20)) && !Budget::of(0.3).affords(Duration::from_millis(21)));
+        assert!(Budget::of(0.03).affords(Duration::from_millis(20)) && !Budget::of(0.03).affords(Duration::from_millis(21)));
     }
 }

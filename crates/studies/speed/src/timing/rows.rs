@@ -1,14 +1,12 @@
 //! Rows of the outcomes of a robot's cells.
 
 use super::machine::Machine;
-use super::samples::{Candidate, Samples};
+use super::samples::{Candidate, Processes, Samples};
 use super::{CellKind, MACHINE, Paired, REFERENCE, check};
 use featherbench_bench::measure::worst;
-use featherbench_bench::statistics::quantile_of;
-use featherbench_bench::statistics::{CONTROL_LEVEL, Estimate, LEVEL, Pace};
+use featherbench_bench::statistics::{Estimate, Pace, quantile_of};
 use featherbench_bench::{Cell, Finished, Gates, NoAnswer, Outcome, Robot, params};
 use featherbench_results::{Kind, Relation, Row, Verdict};
-use featherbench_robots::Random;
 use featherbench_spatial::peak::LANES;
 use featherbench_study::{row, unanswered};
 use serde::{Deserialize, Serialize};
@@ -18,16 +16,19 @@ const BAD_CONTROLS: usize = 4;
 
 /// All rows of a robot.
 pub(super) fn rows(gates: &Gates, robot: &Robot, best_of: &[String], finished: &[Finished]) -> Vec<Row> {
-    let (mut checks, mut experiments, mut machines, mut overheads) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut checks, mut processes, mut machines, mut overheads) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for item in finished {
         match item.0.params() {
             Ok(CellKind::Machine) => machines.extend(machine(&item.0, robot, &item.1)),
             Ok(CellKind::Check { .. }) => checks.push(Check::of(gates, robot, item)),
             Ok(CellKind::Overhead { .. }) => overheads.extend(overhead(robot, item)),
-            Ok(CellKind::Experiment(paired)) => experiments.push(Experiment::of(robot, item, paired)),
+            Ok(CellKind::Experiment(paired)) => processes.push((item, paired)),
             Err(_) => {}
         }
     }
+    // The cells of an experiment stand together, process after process.
+    let same = |a: &(&Finished, Paired), b: &(&Finished, Paired)| a.0.0.path() == b.0.0.path() && a.1.cache == b.1.cache;
+    let experiments: Vec<Experiment> = processes.chunk_by(same).map(|processes| Experiment::of(robot, processes)).collect();
     let noise = noise(&experiments);
     let checked = checks.iter().filter_map(|check| check.row.clone());
     let timed = experiments.iter().flat_map(|experiment| {
@@ -42,7 +43,8 @@ pub(super) fn rows(gates: &Gates, robot: &Robot, best_of: &[String], finished: &
 fn noise(experiments: &[Experiment]) -> Option<String> {
     let timed = || experiments.iter().filter(|experiment| experiment.samples.is_ok());
     let (controls, bad) = (timed().count(), timed().filter(|experiment| experiment.noise().is_some()).count());
-    (bad * BAD_CONTROLS > controls).then(|| format!("{bad} of {controls} A/A controls of this robot are not 1: the machine was not quiet"))
+    (bad * BAD_CONTROLS > controls)
+        .then(|| format!("{bad} of {controls} A/A controls of this robot are far from 1: the machine was not quiet"))
 }
 
 /// The machine's performance. The rows belong to no robot.
@@ -149,31 +151,31 @@ impl Check {
 
 /// One experiment with its statistics.
 pub(super) struct Experiment<'a> {
-    pub(super) cell: &'a Cell,
+    cell: &'a Cell,
     pub(super) params: RowParams,
     pub(super) blank: Row,
     pub(super) candidates: Vec<Candidate>,
-    pub(super) samples: Result<Samples, String>,
+    pub(super) samples: Result<Processes, String>,
     /// The ratio of the A/A replicate to the reference, or why it is not known.
     control: Result<Estimate, &'static str>,
 }
 
 impl<'a> Experiment<'a> {
-    fn of(robot: &Robot, (cell, outcome): &'a Finished, Paired { cache, states, seconds, candidates }: Paired) -> Self {
-        let samples = match outcome.answer() {
+    fn of(robot: &Robot, processes: &[(&'a Finished, Paired)]) -> Self {
+        let ((cell, _), Paired { cache, states, seconds, candidates, .. }) = &processes[0];
+        let samples = processes.iter().map(|((_, outcome), _)| match outcome.answer() {
             Err(no_answer) => Err(no_answer.to_string()),
             Ok(_) => Samples::of_outcome(outcome, candidates.len()).ok_or_else(|| "the outcome holds no samples".to_owned()),
+        });
+        let samples = samples.collect::<Result<Vec<_>, _>>().map(Processes);
+        let params = RowParams { states: *states, seconds: *seconds, ..RowParams::default() };
+        let blank = Row { kind: Kind::Measured, cache: cache.clone(), params: params::text(&params), ..row(cell, robot) };
+        let control = match (candidates.iter().position(|candidate| candidate.control), &samples) {
+            (Some(which), Ok(samples)) if samples.answered(which) && samples.answered(0) => Ok(samples.ratio(which, 0)),
+            (Some(_), Ok(_)) => Err("the A/A control or the reference stopped answering while it was timed"),
+            _ => Err("the experiment has no A/A control"),
         };
-        let params = RowParams { states, seconds, ..RowParams::default() };
-        let blank = Row { kind: Kind::Measured, cache, params: params::text(&params), ..row(cell, robot) };
-        let mut experiment = Self { cell, params, blank, candidates, samples, control: Err("the experiment has no A/A control") };
-        if let (Some(which), Ok(samples)) = (experiment.candidates.iter().position(|candidate| candidate.control), &experiment.samples) {
-            let ratio = Estimate::ratio(samples.of(which), samples.of(0), CONTROL_LEVEL, &mut experiment.random("control"));
-            let known = ratio.value.is_finite() && ratio.low.is_finite() && ratio.high.is_finite();
-            experiment.control =
-                if known { Ok(ratio) } else { Err("the A/A control or the reference stopped answering while it was timed") };
-        }
-        experiment
+        Self { cell, params, blank, candidates: candidates.clone(), samples, control }
     }
 
     /// Why no time of this experiment counts, if its A/A ratio shows that or is missing.
@@ -184,8 +186,10 @@ impl<'a> Experiment<'a> {
         }
     }
 
-    pub(super) fn random(&self, what: &str) -> Random {
-        Random::named(0, &format!("{} {what}", self.cell.id()))
+    /// The ratio of a candidate's time to another's; the A/A ratio widens its interval.
+    pub(super) fn ratio(&self, samples: &Processes, which: usize, over: usize) -> Estimate {
+        let ratio = samples.ratio(which, over);
+        self.control.as_ref().map_or(ratio, |control| ratio.widened(control))
     }
 
     fn rows(&self, checks: &[Check], noise: Option<&str>) -> Vec<Row> {
@@ -218,8 +222,7 @@ impl<'a> Experiment<'a> {
                 continue;
             }
             let complaint = Check::complaint(check);
-            let ns = samples.of(which);
-            if ns.iter().any(|ns| ns.is_nan()) {
+            if !samples.answered(which) {
                 // A candidate that failed from the start has its row in the check.
                 if complaint.is_none() {
                     let row = Row { metric: "ns_per_call".into(), unit: "ns".into(), ..blank };
@@ -227,14 +230,13 @@ impl<'a> Experiment<'a> {
                 }
                 continue;
             }
-            let name = format!("{} {} {}", candidate.engine, candidate.method, candidate.quantity);
-            let time = Estimate::median(ns, LEVEL, &mut self.random(&name));
             let complaint = complaint.or(noise).or(own_noise.as_deref());
             let blank = Row { estimated: candidate.estimate, ..blank };
-            let timed = Row { metric: "ns_per_call".into(), unit: "ns".into(), params: self.params.with_deciles(ns), ..blank.clone() };
-            rows.push(judged(estimated(timed, &time), complaint));
+            let params = self.params.with_deciles(&samples.all(which));
+            let timed = Row { metric: "ns_per_call".into(), unit: "ns".into(), params, ..blank.clone() };
+            rows.push(judged(estimated(timed, &samples.time(which)), complaint));
             if which > 0 {
-                let ratio = Estimate::ratio(ns, samples.of(0), LEVEL, &mut self.random(&format!("{name} ratio")));
+                let ratio = self.ratio(samples, which, 0);
                 let blank = Row { unit: "1".into(), reference: usual, ..blank };
                 rows.push(judged(estimated(Row { metric: "ratio".into(), ..blank.clone() }, &ratio), complaint));
                 let finding = match ratio.pace() {

@@ -1,6 +1,7 @@
 //! Raw samples: the data of an experiment, as the outcome of its cell and as a line of the run's side file.
 
 use super::Paired;
+use featherbench_bench::statistics::Estimate;
 use featherbench_bench::{Finished, Outcome, Quantity};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -46,9 +47,35 @@ impl Samples {
         whole.then(|| Self { calls: calls.iter().map(|&calls| calls as usize).collect(), rounds: ns.len() / candidates, ns: ns.to_vec() })
     }
 
-    /// The samples of a finished experiment with so many candidates.
+    /// The samples of one process of an experiment with so many candidates.
     pub fn of_outcome(outcome: &Outcome, candidates: usize) -> Option<Self> {
         Self::from_values(outcome.values()?).filter(|samples| samples.calls.len() == candidates)
+    }
+}
+
+/// The blocks of an experiment, process by process.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Processes(pub Vec<Samples>);
+
+impl Processes {
+    /// A candidate's time.
+    pub fn time(&self, which: usize) -> Estimate {
+        Estimate::time(self.0.iter().map(|samples| samples.of(which)))
+    }
+
+    /// The ratio of a candidate's time to another's.
+    pub fn ratio(&self, which: usize, over: usize) -> Estimate {
+        Estimate::ratio(self.0.iter().map(|samples| (samples.of(which), samples.of(over))))
+    }
+
+    /// Whether a candidate answered to the last round of the last process.
+    pub fn answered(&self, which: usize) -> bool {
+        self.0.iter().all(|samples| samples.of(which).iter().all(|ns| !ns.is_nan()))
+    }
+
+    /// The blocks of a candidate in all processes.
+    pub fn all(&self, which: usize) -> Vec<f64> {
+        self.0.iter().flat_map(|samples| samples.of(which)).copied().collect()
     }
 }
 
@@ -76,18 +103,18 @@ impl Candidate {
     }
 }
 
-/// The raw samples of every experiment as lines of JSON. Each has cell, robot, quantity, cache regime, candidate, and calls of a block.
+/// The raw samples of every experiment as lines of JSON. Each has cell, robot, quantity, cache regime, process, candidate, and calls of a block.
 /// Then come the nanoseconds per call of its blocks, round by round (`null` where there is none).
 pub(super) fn lines(finished: &[Finished]) -> String {
     let mut text = String::new();
     for (cell, outcome) in finished {
-        let Some(Paired { cache, candidates, .. }) = Paired::of(cell) else { continue };
+        let Some(Paired { cache, process, candidates, .. }) = Paired::of(cell) else { continue };
         let Some(samples) = Samples::of_outcome(outcome, candidates.len()) else { continue };
         for (which, candidate) in candidates.iter().enumerate() {
             // A tenth of a picosecond is far below the resolution of a clock; the outcomes keep every bit.
             let ns: Vec<Option<f64>> = samples.of(which).iter().map(|ns| ns.is_finite().then(|| (ns * 1e4).round() / 1e4)).collect();
             let line = json!({
-                "cell": cell.id(), "model": cell.robot, "quantity": candidate.quantity, "cache": cache,
+                "cell": cell.id(), "model": cell.robot, "quantity": candidate.quantity, "cache": cache, "process": process,
                 "engine": candidate.engine, "method": candidate.method, "control": candidate.control, "estimate": candidate.estimate,
                 "calls": samples.calls[which], "ns": ns,
             });

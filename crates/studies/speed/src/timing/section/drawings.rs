@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use featherbench_bench::statistics::NOISE;
 use featherbench_report::choices::{Choices, List};
 use featherbench_report::figure::{Axis, Line, Plot, Point, Rows, Series, Style};
 use featherbench_report::fit::Fit;
@@ -15,8 +16,6 @@ use super::time::{TimeLine, TimePoint, case_words};
 use super::tradeoff::Tradeoff;
 use featherbench_study::figures::{ZERO, drawing, errors, fitted, joined, point, told, with_exponent};
 
-/// Within this no experiment calls anything a difference.
-const NOISE: f64 = 0.02;
 /// Characters of a robot's name along an axis.
 const NAME: usize = 22;
 

@@ -1,6 +1,7 @@
 //! Section: the speed of the engines compared with each other and with the machine's peak, and whether the machine was quiet.
 
 use featherbench_bench::BATCH;
+use featherbench_bench::statistics::VOID;
 use featherbench_report::numbers::{count, short};
 use featherbench_report::{Overview, Part, labels};
 use featherbench_results::RunInfo;
@@ -43,7 +44,7 @@ pub fn markup(run: &RunInfo, overview: &Overview, speed: &Speed, best: &[Best]) 
             h2 { "Speed, side by side" }
             p.lead {
                 "The time of each candidate over that of our usual method, for the same answer: the median over the rounds of a paired experiment, in which all stand in "
-                "alternating blocks on one core. Bars are 95 % bootstrap intervals. Above 1 ours is faster, below 1 the other."
+                "alternating blocks on one core. Bars are 95 % intervals, by the scatter over processes. Above 1 ours is faster, below 1 the other."
             }
             (missing(run))
             @if !speed.ratios.is_empty() {
@@ -231,7 +232,7 @@ fn controls(overview: &Overview, speed: &Speed) -> Markup {
             h3 { "Was the machine quiet?" }
             p {
                 "In every experiment a second copy of our usual method stands among the others. "
-                b { (good) " of " (count(speed.controls.len(), "such A/A control")) } " hold 1 and lie within ± 2 %. "
+                b { (good) " of " (count(speed.controls.len(), "such A/A control")) } " lie within ± " (format!("{:.0} %", 100.0 * VOID)) ". One that misses 1 widens the intervals beside it. "
                 @if invalid > 0 { "Where one does not, no time of its experiment counts; where more than a quarter of a robot's do not, none of its times does: " b { (count(invalid, "row")) } "." }
                 @else { "Every time counts." }
             }

@@ -138,8 +138,8 @@ impl<'a> SpeedVerdict<'a> {
         let all: usize = self.void.iter().sum();
         let whys = [
             "the answers are missing or wrong",
-            "the A/A control of their experiment is not 1",
-            "too many A/A controls of their robot are not 1",
+            "the A/A control of their experiment is far from 1",
+            "too many A/A controls of their robot are far from 1",
         ];
         let parts: Vec<(usize, &str)> = self.void.into_iter().zip(whys).filter(|(number, _)| *number > 0).collect();
         let words = match &parts[..] {
