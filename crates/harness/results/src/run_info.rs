@@ -56,6 +56,9 @@ pub struct RunInfo {
     pub studies: Vec<String>,
     /// Wall time of each phase, in seconds.
     pub seconds: BTreeMap<String, f64>,
+    /// Cores that other programs kept busy, on average, while a study took times.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub others: BTreeMap<String, f64>,
     /// The conditions of the run, each with the number that is expected and the number that was found.
     pub expected: Vec<Expectation>,
     /// The conventions of the engines, compared with ours.
@@ -338,7 +341,19 @@ impl RobotInfo {
     }
 }
 
+/// Other programs that keep less than this of a core busy are not told.
+const QUIET: f64 = 0.2;
+
 impl RunInfo {
+    /// A sentence, if other programs were busy while times were taken.
+    pub fn busy(&self) -> Option<String> {
+        let most = self.others.values().copied().max_by(f64::total_cmp).filter(|&cores| cores >= QUIET)?;
+        Some(format!(
+            "Other programs kept {most:.1} of {} cores busy while times were taken: what that did to them is in their intervals.",
+            self.host.cores
+        ))
+    }
+
     /// Whether a file of the run must have a checksum.
     pub fn has_file(&self, name: &str) -> bool {
         self.files.iter().any(|file| file == name)
@@ -366,8 +381,12 @@ impl RunInfo {
 
     /// Writes a `run.json` in one step, with the current format.
     pub fn write(&self, path: &Path) -> Result<(), ResultsError> {
-        let numbers =
-            self.seconds.iter().map(|(phase, &seconds)| (phase.as_str(), seconds)).chain(self.host.load.map(|load| ("load", load)));
+        let numbers = self
+            .seconds
+            .iter()
+            .chain(&self.others)
+            .map(|(phase, &number)| (phase.as_str(), number))
+            .chain(self.host.load.map(|load| ("load", load)));
         for (field, value) in numbers {
             if !value.is_finite() {
                 return Err(ResultsError::NonFinite { path: path.to_owned(), field: field.to_owned(), value });

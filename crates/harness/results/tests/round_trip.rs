@@ -285,6 +285,7 @@ fn run_info() -> RunInfo {
             notes: vec!["the axis is normalised".into()],
         }],
         seconds: BTreeMap::from([("accuracy".into(), 0.1)]),
+        others: [("timing".to_owned(), 0.4)].into(),
         expected: vec![
             Expectation::new(GateKind::Counts, "id".into(), 2, 1).because("one is missing".into()).about(Culprit::engine("drake")),
         ],
@@ -484,4 +485,17 @@ fn an_atomic_write_leaves_the_old_file_or_the_new_one() {
     assert!(error.contains("blocked"), "{error}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     assert!(atomic_write(Path::new("/"), b"").is_err());
+}
+
+/// Other programs are told from a fifth of a core on, and the study that they disturbed most is what counts.
+#[test]
+fn a_busy_machine_is_told() {
+    let run = |others: &[(&str, f64)]| RunInfo {
+        others: others.iter().map(|(study, cores)| ((*study).to_owned(), *cores)).collect(),
+        ..RunInfo::default()
+    };
+    assert_eq!(run(&[]).busy(), None);
+    assert_eq!(run(&[("timing", 0.19)]).busy(), None);
+    let busy = run(&[("contact_timing", 0.1), ("timing", 0.94)]).busy().unwrap();
+    assert!(busy.starts_with("Other programs kept 0.9 of 0 cores busy"), "{busy}");
 }

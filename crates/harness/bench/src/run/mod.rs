@@ -5,6 +5,7 @@
 pub(crate) mod cell;
 pub(crate) mod entries;
 mod fingerprint;
+mod load;
 mod offers;
 pub mod params;
 mod processes;
@@ -17,6 +18,7 @@ pub use crate::run::fingerprint::{FINGERPRINT_NAME, shard_of};
 pub use crate::run::processes::{NewProcess, answer};
 
 use crate::run::fingerprint::SHARD;
+use crate::run::load::Load;
 use crate::run::study::{Asked, Context, Finished, Study, by_robot};
 use crate::shard::{Shard, hash_of};
 use crate::{Cell, HarnessError, Lost, NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Robot};
@@ -214,7 +216,11 @@ impl Run {
             let engines: BTreeSet<String> = whole.iter().map(|cell| cell.engine.clone()).collect();
             let cells = kept(study.as_ref(), whole, keep);
             if let Some(progress) = progress {
+                // A study with processes of its own keeps one core busy; one without may use all.
+                let load = cells.iter().any(|cell| study.process(cell).is_some()).then(Load::now).flatten();
                 complete(study.as_ref(), context, &cells, &store, progress, self.new_process.as_deref())?;
+                let others = load.and_then(|load| load.others());
+                self.info.others.extend(others.map(|others| (study.name().to_owned(), others)));
             }
             if study.compares_all() {
                 let finished = outcomes(cells, &store)?;

@@ -25,11 +25,11 @@ pub(crate) fn section(run: &RunInfo, rows: &[Row], overview: &Overview) -> Optio
         return None;
     }
     let (drawn, parts) = figure(&ranking);
-    let lead = Lead { body: html! { (table(overview, &ranking)) (drawn) }, lines: lines(&ranking) };
+    let lead = Lead { body: html! { (table(run, overview, &ranking)) (drawn) }, lines: lines(run, &ranking) };
     let body = html! {
         section #engines {
             h2 { "Engines" }
-            p.lead { (coded(&note(&ranking))) }
+            p.lead { (coded(&note(run, &ranking))) }
             div.scroll { (whole(overview, &ranking)) }
         }
     };
@@ -61,7 +61,7 @@ fn ratio(times: &Times) -> String {
 }
 
 /// The table of the first page: a line for each engine.
-fn table(overview: &Overview, ranking: &Ranking) -> Markup {
+fn table(run: &RunInfo, overview: &Overview, ranking: &Ranking) -> Markup {
     let ranked = ranking.engines.iter();
     html! {
         div.scroll.of-ranking { table.compact.ranking #ranking {
@@ -86,7 +86,7 @@ fn table(overview: &Overview, ranking: &Ranking) -> Markup {
                 }
             } }
         } }
-        p.note { (coded(&note(ranking))) " " a href="#engines" { "Every number" } "." }
+        p.note { (coded(&note(run, ranking))) " " a href="#engines" { "Every number" } "." }
     }
 }
 
@@ -115,8 +115,8 @@ fn time_cell(of: &Ranked, quantity: &str) -> Markup {
     }
 }
 
-/// What the numbers are, in two or three sentences.
-fn note(ranking: &Ranking) -> String {
+/// What the numbers are, in two or three sentences, and whether the machine was busy.
+fn note(run: &RunInfo, ranking: &Ranking) -> String {
     let most = |number: fn(&Errors) -> usize| ranking.engines.iter().flat_map(|of| of.errors.values()).map(number).max();
     let mut text = String::new();
     if let Some((robots, states)) = most(|errors| errors.robots).zip(most(|errors| errors.states)) {
@@ -130,7 +130,7 @@ fn note(ranking: &Ranking) -> String {
     let times = || ranking.engines.iter().filter(|of| of.name != OWN).flat_map(|of| of.times.values());
     let robots = times().map(|times| times.robots).max().map(|robots| count(robots, "robot"));
     let machines = times().map(|times| times.machines).max();
-    text + &match (machines, robots) {
+    text += &match (machines, robots) {
         (None, _) | (_, None) => " No time of another engine counts here: `run --suite timing --live` measures them.".to_owned(),
         (Some(0), Some(robots)) => {
             format!(" Times are medians over up to {robots}, with the least and the most; measured on this machine.")
@@ -139,7 +139,8 @@ fn note(ranking: &Ranking) -> String {
             " Times are medians over up to {robots}, with the least and the most. What this run did not measure was recorded on {}; `run --suite timing --live` measures all.",
             count(machines, "other machine")
         ),
-    }
+    };
+    text + &run.busy().map(|busy| format!(" {busy}")).unwrap_or_default()
 }
 
 /// A text in which what stands between backticks is code.
@@ -213,7 +214,7 @@ fn figure(ranking: &Ranking) -> (Markup, Vec<Part>) {
 }
 
 /// The table of the terminal.
-fn lines(ranking: &Ranking) -> Vec<String> {
+fn lines(run: &RunInfo, ranking: &Ranking) -> Vec<String> {
     let heads = ["engine", "right", "FD error", "worst", "on", "time FD", "ID", "M", "gravest finding"].map(str::to_owned);
     let line = |of: &Ranked| {
         let errors = of.errors.get("fd");
@@ -234,6 +235,6 @@ fn lines(ranking: &Ranking) -> Vec<String> {
     };
     let table: Vec<_> = std::iter::once(heads).chain(ranking.engines.iter().map(line)).collect();
     let mut lines: Vec<String> = aligned(&table, &[0, 1, 4, 8]).into_iter().map(|line| format!("  {line}")).collect();
-    lines.push(format!("  {}", note(ranking)));
+    lines.push(format!("  {}", note(run, ranking)));
     lines
 }

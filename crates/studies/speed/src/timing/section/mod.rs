@@ -33,7 +33,7 @@ pub(crate) fn sections<'a>(run: &RunInfo, rows: &'a [Row], overview: &Overview<'
     let verdict = SpeedVerdict::of(overview, rows);
     let points = tradeoff::points(overview, rows, &times);
     let (answer, part) = verdict.markup(overview).unzip();
-    let (body, drawn) = time::markup(overview, &times, verdict.first_times(overview));
+    let (body, drawn) = time::markup(run, overview, &times, verdict.first_times(overview));
     let mut sections = vec![Section {
         terms: if times.is_empty() { &[] } else { TERMS },
         lines: line::line(overview, rows, &speed).into_iter().chain(best::lines(&best)).collect(),

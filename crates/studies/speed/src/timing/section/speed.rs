@@ -47,6 +47,7 @@ pub fn markup(run: &RunInfo, overview: &Overview, speed: &Speed, best: &[Best]) 
                 "alternating blocks on one core. Bars are 95 % intervals, by the scatter over processes. Above 1 ours is faster, below 1 the other."
             }
             (missing(run))
+            @if let Some(busy) = run.busy() { p.warning { (busy) } }
             @if !speed.ratios.is_empty() {
                 (drawn)
                 p.note { "Grey: ± 2 %, within which this experiment calls nothing a difference. Hollow marks do not count: see below." }
