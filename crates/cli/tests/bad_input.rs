@@ -18,7 +18,7 @@ const JOINT: &str = r#"<joint name="j" type="revolute"><parent link="base"/><chi
 fn broken_urdf_is_refused_by_file_line_and_name() {
     let sandbox = Sandbox::new();
     let inertia = r#"<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>"#;
-    let cases: [(&str, String, &[&str]); 9] = [
+    let cases: [(&str, String, &[&str]); 10] = [
         ("malformed", "<robot name=\"r\"><link name=\"base\"></robot>".into(), &[":1:"]),
         ("unknown joint type", urdf(&JOINT.replace("revolute", "wobbly")), &[":4:", "wobbly", "'j'"]),
         (
@@ -37,7 +37,12 @@ fn broken_urdf_is_refused_by_file_line_and_name() {
                 "{JOINT}<link name=\"hand\"/>{}",
                 JOINT.replace("\"j\"", "\"k\"").replace("\"base\"", "\"arm\"").replacen("child link=\"arm\"", "child link=\"hand\"", 1)
             )),
-            &["hand"],
+            &["hand", "--allow-massless"],
+        ),
+        (
+            "stranger's mimic",
+            urdf(&JOINT.replace("<axis", "<mimic joint=\"other\"/><axis")),
+            &["joint 'j' mimics joint 'other'", "--independent-mimics"],
         ),
         ("negative mass", urdf(JOINT).replace("mass value=\"1\"", "mass value=\"-1\""), &[":3:", "arm", "-1"]),
         ("not a number", urdf(JOINT).replace(inertia, &inertia.replace("ixx=\"1\"", "ixx=\"nan\"")), &[":3:", "ixx"]),

@@ -14,7 +14,7 @@ use crate::root::Root;
 use ::featherbench_results::ModelOrigin;
 use featherbench_bench::{FileBase, FileContent, FileFormat, Robot, RobotEntry, RobotSource, Suite, did_you_mean};
 use featherbench_engines::{Limits, Oracle};
-use featherbench_formats::urdf::{Note, Options};
+use featherbench_formats::urdf::{Note, Options, UrdfProblem};
 use featherbench_model::Description;
 use featherbench_robots::{Family, StateBatch};
 use std::collections::HashSet;
@@ -214,5 +214,13 @@ pub fn read_model(path: &Path) -> Result<Description, Fail> {
 
 /// Reads a URDF file, with notes on what was left out.
 pub fn import(path: &Path, options: &Options) -> Result<(Description, Vec<Note>), Fail> {
-    featherbench_formats::urdf::read(path, options).map_err(|error| Fail::input(error.to_string()))
+    featherbench_formats::urdf::read(path, options).map_err(|error| {
+        // Other readers of the same file have no such options.
+        let option = match *error.problem {
+            UrdfProblem::Massless { .. } => "; --allow-massless imports it all the same",
+            UrdfProblem::Mimic { .. } => "; --independent-mimics frees it",
+            _ => "",
+        };
+        Fail::input(format!("{error}{option}"))
+    })
 }

@@ -103,7 +103,7 @@ fn bad_files_are_named() {
         (
             "<axis xyz=\"0 1 0\"/>",
             "<mimic joint=\"other\"/>",
-            &["f.urdf:16:5: joint 'shoulder' mimics joint 'other', which is not there", "independent mimics"],
+            &["f.urdf:16:5: joint 'shoulder' mimics joint 'other', which is not there; remove its <mimic>"],
         ),
         ("<origin xyz=\"0 0 1\"/>", "<origin quat_xyzw=\"0 0 1\"/>", &["f.urdf:15:45: quat_xyzw=\"0 0 1\" of joint 'shoulder'"]),
         ("lower=\"-1\"", "lower=\"low\"", &["f.urdf:17:5: lower=\"low\" of joint 'shoulder' is not a number"]),

@@ -118,7 +118,7 @@ pub enum UrdfProblem {
     },
     /// A body moves and has no mass.
     #[error(
-        "link '{link}' moves (joint '{joint}') but {}; give it mass, fix it to its neighbour, or import with massless bodies allowed{}",
+        "link '{link}' moves (joint '{joint}') but {}; give it mass, or fix it to its neighbour{}",
         if *has_inertial { "has no mass, nor has anything fixed to it" } else { "has no <inertial>, nor has anything fixed to it mass" },
         if joint == super::tree::ROOT_JOINT { " (or import it with a fixed base)" } else { "" }
     )]
@@ -145,7 +145,7 @@ pub enum UrdfProblem {
         kind: String,
     },
     /// A joint mimics another, and cannot follow it.
-    #[error("joint '{joint}' mimics joint '{of}', {why}; import with independent mimics to free it")]
+    #[error("joint '{joint}' mimics joint '{of}', {why}; remove its <mimic> to free it")]
     Mimic {
         /// The joint.
         joint: String,
