@@ -29,9 +29,9 @@ BACKGROUND = "return getComputedStyle(document.body).backgroundColor"
 SECTIONS = [
     "verdict",
     "engines",
+    "pairs",
     "agreement",
     "depth",
-    "pairs",
     "joints",
     "import",
     "accuracy",

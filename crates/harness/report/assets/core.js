@@ -92,6 +92,9 @@ const featherbench = (() => {
   }));
 })();
 
+// On a narrow screen the navigation is a menu, which closes when a section is chosen.
+document.addEventListener("click", (event) => event.target.closest("nav a")?.closest(":popover-open")?.hidePopover());
+
 // The command's copy button. Under file:// a browser may refuse its clipboard; then the command is selected, ready to be copied.
 document.addEventListener("click", async (event) => {
   const button = event.target.closest("#copy");

@@ -102,7 +102,8 @@ fn header(run: &RunInfo, sections: &[&Section]) -> Markup {
                     (logo())
                     span { "featherbench" }
                 }
-                nav aria-label="Sections" {
+                button #menu type="button" popovertarget="sections" { "☰ Sections" }
+                nav #sections popover aria-label="Sections" {
                     @for section in sections { a href={ "#" (section.anchor) } { (section.name) } }
                 }
                 button #theme type="button" aria-label="Switch between light and dark" title="Light or dark" { "◐" }

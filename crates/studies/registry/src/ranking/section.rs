@@ -79,7 +79,7 @@ fn table(run: &RunInfo, overview: &Overview, ranking: &Ranking) -> Markup {
             tbody { @for of in ranked {
                 tr {
                     th scope="row" { (engine(overview, &of.name)) " " small { (of.version) } }
-                    td data-of="right" { b { (if of.asked == 0 { NONE.to_owned() } else { share(of.right, of.asked) }) } @if of.asked > 0 { small { "of " (grouped(of.asked)) } } }
+                    td data-of="right" { b { (if of.asked == 0 { NONE.to_owned() } else { share(of.right, of.asked) }) } @if of.asked > 0 { " " small { "of " (grouped(of.asked)) } } }
                     @for (quantity, short) in QUANTITIES.into_iter().zip(NARROW) { td.number data-of={ (short) ", error" } { (error_cell(of.errors.get(quantity), overview)) } }
                     @for (quantity, short) in QUANTITIES.into_iter().zip(NARROW) { td.number data-of={ (short) ", time" } { (time_cell(of, quantity)) } }
                     td.gravest { (of.gravest) }

@@ -21,9 +21,9 @@ fn the_page_has_its_sections_and_stays_small() {
     assert!(records.len() > 10_000);
     let order = [
         "verdict",
+        "pairs",
         "agreement",
         "depth",
-        "pairs",
         "accuracy",
         "conditioning",
         "time",

@@ -28,7 +28,9 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let plots = depth::plots(overview, rows);
     let (body, parts) = heatmap::markup(overview, &cells, &who);
     let (depth, drawn) = depth::markup(overview, &plots);
+    let (pairs, of_two) = pairs::markup(overview, rows);
     let mut sections = vec![
+        Section { parts: of_two, style: include_str!("pairs.css"), ..Section::new("pairs", "Pairs", pairs) },
         Section {
             parts,
             script: include_str!("heatmap.js"),
@@ -37,7 +39,6 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
             ..Section::new("agreement", "Agreement", body).with_data(&cells.data())
         },
         Section { parts: drawn, shows: depth::shown(&plots), script: include_str!("depth.js"), ..Section::new("depth", "Error", depth) },
-        Section { style: include_str!("pairs.css"), ..Section::new("pairs", "Pairs", pairs::markup(overview, rows)) },
     ];
     if !matrix.rows.is_empty() {
         let body = joints::markup(overview, &cells.quantities, &matrix);

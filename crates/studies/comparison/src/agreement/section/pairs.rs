@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use featherbench_report::choices::{Choices, List};
 use featherbench_report::numbers::short;
-use featherbench_report::{Overview, labels, opener};
+use featherbench_report::{Overview, Part, labels, opener, robot};
 use featherbench_results::Row;
 use maud::{Markup, html};
 
@@ -12,10 +13,14 @@ use super::PAIRWISE;
 /// The largest difference of two engines on a quantity, and its row.
 type Largest<'a> = BTreeMap<(usize, usize), (f64, &'a Row)>;
 
-/// Writes the section.
-pub fn markup(overview: &Overview, rows: &[Row]) -> Markup {
+/// The choice of all engines.
+const ALL: &str = "all";
+
+/// Writes the section, and the tables of two engines, which are chosen.
+pub fn markup(overview: &Overview, rows: &[Row]) -> (Markup, Vec<Part>) {
     let matrices = matrices(overview, rows);
-    html! {
+    let (shown, parts) = if matrices.is_empty() { (html! {}, Vec::new()) } else { choices(overview, &matrices).made() };
+    let body = html! {
         section #pairs {
             h2 { "Every engine against every other" }
             p.lead {
@@ -25,10 +30,54 @@ pub fn markup(overview: &Overview, rows: &[Row]) -> Markup {
             @if matrices.is_empty() {
                 p.empty { "This run holds no rows that compare two engines." }
             } @else {
-                div.matrices { @for (quantity, largest) in &matrices { div.scroll { (matrix(overview, quantity, largest)) } } }
+                (shown)
                 p.note { "Stronger colour is larger. An empty cell was not compared. Click a number to see the rows of the robot on which it arose." }
             }
         }
+    };
+    (body, parts)
+}
+
+/// All matrices, and a table for any two engines.
+fn choices<'a>(overview: &Overview, matrices: &[(&'a str, Largest<'a>)]) -> Choices {
+    let name = |engine: usize| overview.engines[engine].to_owned();
+    let compared = |engine: &usize| matrices.iter().any(|(_, largest)| largest.keys().any(|(one, other)| one == engine || other == engine));
+    let engines: Vec<usize> = (0..overview.engines.len()).filter(compared).collect();
+    let all = html! { div.matrices { @for (quantity, largest) in matrices { div.scroll { (matrix(overview, quantity, largest)) } } } };
+    let mut drawings = vec![(vec![ALL.to_owned(); 2], all)];
+    for &one in &engines {
+        for &other in engines.iter().filter(|&&other| other != one) {
+            let pair = (one.max(other), one.min(other));
+            let found: Vec<_> = matrices.iter().filter_map(|(quantity, largest)| Some((*quantity, largest.get(&pair)?))).collect();
+            if !found.is_empty() {
+                drawings.push((vec![name(one), name(other)], table(overview, &found)));
+            }
+        }
+    }
+    let options = || -> Vec<(String, String)> {
+        std::iter::once((ALL.to_owned(), "all engines".to_owned()))
+            .chain(engines.iter().map(|&engine| (name(engine), name(engine))))
+            .collect()
+    };
+    let lists =
+        vec![List { id: "pairs-one", label: "Of", options: options() }, List { id: "pairs-other", label: "against", options: options() }];
+    Choices { name: "pairs-choices", title: "Two engines", lists, opening: vec![ALL.to_owned(); 2], drawings }
+}
+
+/// The largest differences of two engines, quantity by quantity.
+fn table(overview: &Overview, found: &[(&str, &(f64, &Row))]) -> Markup {
+    html! {
+        div.scroll { table.compact.sortable {
+            thead { tr { th scope="col" { "compute" } th.number scope="col" { "largest difference" } th scope="col" { "on" } th scope="col" { "states" } } }
+            tbody { @for (quantity, (value, row)) in found {
+                tr {
+                    th scope="row" { (labels::quantity(quantity)) }
+                    td.number { (cell(overview, *value, row)) }
+                    td { (robot(overview, &row.robot)) }
+                    td { (row.states) }
+                }
+            } }
+        } }
     }
 }
 
