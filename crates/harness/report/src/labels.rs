@@ -10,6 +10,31 @@ pub fn quantity(name: &str) -> &str {
     Quantity::parse(name).map_or(name, |quantity| quantity.title())
 }
 
+/// Methods whose names are not words.
+const METHODS: [(&str, &str); 16] = [
+    ("aba", "articulated bodies"),
+    ("aba_packed", "articulated bodies, packed"),
+    ("aba_parallel", "articulated bodies, parallel"),
+    ("batch", "a state in each lane"),
+    ("crba", "composite bodies"),
+    ("crba_ldl", "composite bodies, LDLᵀ"),
+    ("crba_packed", "composite bodies, packed"),
+    ("crba_parallel", "composite bodies, parallel"),
+    ("kinematics_packed", "kinematics, packed"),
+    ("ltdl", "LᵀDL factors"),
+    ("ltdl_parallel", "LᵀDL factors, parallel"),
+    ("refined_1", "LᵀDL factors, refined"),
+    ("refined_2", "LᵀDL factors, refined twice"),
+    ("rnea", "Newton–Euler"),
+    ("rnea_packed", "Newton–Euler, packed"),
+    ("rnea_parallel", "Newton–Euler, parallel"),
+];
+
+/// The text of a method in a figure.
+pub fn method(name: &str) -> &str {
+    METHODS.iter().find(|(known, _)| *known == name).map_or(name, |(_, words)| words)
+}
+
 /// The place of a quantity among the others: those of engines first, then by name.
 pub fn quantity_rank(name: &str) -> (usize, &str) {
     (Quantity::parse(name).map_or(Quantity::ALL.len(), |quantity| quantity as usize), name)

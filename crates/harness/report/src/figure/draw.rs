@@ -9,8 +9,10 @@ use super::plot::{Line, Plot, Point, Rows, Series};
 use super::style::{Style, ink};
 use crate::numbers::larger;
 
-/// Width and height of the box.
+/// Width and height of the box in a paper.
 const BOX: [f64; 2] = [430.0, 310.0];
+/// The same on the page, whose width it takes.
+const PAGE: [f64; 2] = [860.0, 400.0];
 /// Room left of the box and above it.
 const CORNER: [f64; 2] = [72.0, 16.0];
 /// Room below the box: for the title of the axis across, and for labels that are level.
@@ -38,12 +40,12 @@ struct Layout<'a> {
 }
 
 impl<'a> Layout<'a> {
-    fn of(plot: &'a Plot) -> Option<Self> {
+    fn of(plot: &'a Plot, size: [f64; 2]) -> Option<Self> {
         plot.shown().next()?;
         let names = plot.x.names().map(|names| (names.iter().map(|name| width(name, 12.0)).fold(0.0, larger), names));
         let slope = SLOPE.to_radians();
         let [mut left, top] = CORNER;
-        let mut across = BOX[0];
+        let mut across = size[0];
         let mut labels = BELOW[1];
         if let Some((longest, names)) = &names {
             across = larger(across, NAMED * names.len() as f64);
@@ -51,7 +53,7 @@ impl<'a> Layout<'a> {
             // A name ends below its place and begins on the left of it.
             left = larger(left, longest * slope.cos() - 0.5 * across / (names.len() as f64 + 0.2) + 12.0);
         }
-        let [right, bottom] = [left + across, top + BOX[1]];
+        let [right, bottom] = [left + across, top + size[1]];
         let x = Scale::of(&plot.x, plot.numbers(0), [left, right])?;
         let y = Scale::of(&plot.y, plot.numbers(1), [bottom, top])?;
         Some(Self { plot, x, y, left, top, right, bottom, labels })
@@ -84,11 +86,16 @@ impl Plot {
 /// The size and the elements of a plot; `None` if no point has a place. For the page marks have their words and rows with them, which a paper
 /// has no use for.
 pub(super) fn draw(plot: &Plot, events: &[(f64, String)], page: bool) -> Option<([f64; 2], Markup)> {
-    let layout = Layout::of(plot)?;
+    let layout = Layout::of(plot, if page { PAGE } else { BOX })?;
     let Layout { left, top, right, bottom, labels, .. } = layout;
     let entries: Vec<(&str, Style, Sample)> = plot.series.iter().map(entry).collect();
     let below = bottom + labels + BELOW[0];
-    let size = [right + 14.0 + legend_width(&entries), larger(below, top + 20.0 * entries.len() as f64 + 10.0)];
+    // In a paper names stand beside the box, on the page below it, in columns.
+    let column = legend_width(&entries);
+    let columns = if page { ((right - left) / column).floor().clamp(1.0, entries.len().max(1) as f64) as usize } else { 1 };
+    let rows = 20.0 * entries.len().div_ceil(columns) as f64 + 10.0;
+    let size = if page { [right + 14.0, below + rows] } else { [right + 14.0 + column, larger(below, top + rows)] };
+    let corner = if page { [left, below + 10.0] } else { [right + 14.0, top + 8.0] };
     let body = html! {
         (bands(&layout))
         (frame(&layout, page))
@@ -102,7 +109,7 @@ pub(super) fn draw(plot: &Plot, events: &[(f64, String)], page: bool) -> Option<
                 text-anchor=(if late { "end" } else { "start" }) { (words) }
         }
         @for series in &plot.series { (drawn(&layout, series, page)) }
-        (legend(&entries, right + 14.0, top + 8.0))
+        (legend(&entries, corner, [columns as f64, column]))
     };
     Some((size, body))
 }

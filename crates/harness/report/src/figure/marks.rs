@@ -108,12 +108,13 @@ pub(super) struct Sample {
     pub(super) broad: bool,
 }
 
-/// The names of series, each with its sample, below one another.
-pub(super) fn legend(entries: &[(&str, Style, Sample)], left: f64, top: f64) -> Markup {
+/// The names of series, each with its sample, in so many columns of a width.
+pub(super) fn legend(entries: &[(&str, Style, Sample)], [left, top]: [f64; 2], [columns, width]: [f64; 2]) -> Markup {
     html! {
         g.legend {
             @for (index, (name, style, sample)) in entries.iter().enumerate() {
-                @let y = top + 20.0 * index as f64;
+                @let left = left + width * (index as f64 % columns);
+                @let y = top + 20.0 * (index as f64 / columns).floor();
                 @let ends = [(left, y), (left + 26.0, y)];
                 g.entry {
                     @if sample.broad { (broad(*style, &ends)) }

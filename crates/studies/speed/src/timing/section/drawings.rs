@@ -5,7 +5,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use featherbench_bench::statistics::NOISE;
 use featherbench_report::choices::{Choices, List};
 use featherbench_report::figure::{Axis, Line, Plot, Point, Rows, Series, Style};
-use featherbench_report::fit::Fit;
 use featherbench_report::numbers::larger;
 use featherbench_report::{Overview, Part, labels, robot_chunk};
 use maud::Markup;
@@ -14,8 +13,14 @@ use super::STUDY;
 use super::ratios::{Ratio, Speed};
 use super::time::{TimeLine, TimePoint, case_words};
 use super::tradeoff::Tradeoff;
-use featherbench_study::figures::{ZERO, drawing, errors, fitted, joined, point, told, with_exponent};
+use featherbench_study::figures::{ZERO, drawing, errors, fitted, joined, point, told};
 
+/// The quantity whose times stand on the page at first.
+const OPENING: &str = "fd";
+/// The family of robots that have nothing in common but that they are real.
+const UNRELATED: &str = "robot";
+/// The fewest points through which a fit is drawn: through three a line goes nearly always.
+const FITTED: usize = 4;
 /// Characters of a robot's name along an axis.
 const NAME: usize = 22;
 
@@ -43,58 +48,56 @@ fn flags(estimated: bool, valid: bool) -> [String; 2] {
     [words(estimated, "estimate"), words(!valid, "does not count")]
 }
 
-/// Time against size, by kind of inputs and family: all families at once could not be read.
+/// Time against size, by what is computed, kind of inputs and family: all at once could not be read.
 pub fn times(overview: &Overview, times: &[TimeLine], opening: &str) -> (Markup, Vec<Part>) {
     // `stream` first, as it is more realistic: every call reads another state.
     let mut cases = different(times.iter().map(|line| line.cache));
     cases.sort_by_key(|case| std::cmp::Reverse(*case));
     let families = different(times.iter().map(|line| line.family));
+    let mut quantities = different(times.iter().map(|line| line.algorithm));
+    quantities.sort_by_key(|quantity| labels::quantity_rank(quantity));
     let mut drawings = Vec::new();
-    for case in &cases {
-        for family in &families {
-            let lines: Vec<&TimeLine> = times.iter().filter(|line| line.cache == *case && line.family == *family).collect();
-            if !lines.is_empty() {
-                drawings.push(([*case, *family].map(str::to_owned).into(), against_size(overview, times, &lines)));
+    for quantity in &quantities {
+        for case in &cases {
+            for family in &families {
+                let same = |line: &&TimeLine| line.algorithm == *quantity && line.cache == *case && line.family == *family;
+                let lines: Vec<&TimeLine> = times.iter().filter(same).collect();
+                if !lines.is_empty() {
+                    drawings.push(([*quantity, case, family].map(str::to_owned).into(), against_size(overview, &lines)));
+                }
             }
         }
     }
+    let options = quantities.iter().map(|quantity| ((*quantity).to_owned(), labels::quantity(quantity).to_owned())).collect();
     let lists = vec![
+        List { id: "time-quantity", label: "Compute", options },
         List { id: "time-case", label: "Inputs", options: cases.iter().map(|case| ((*case).to_owned(), case_words(case))).collect() },
         List::of("time-family", "Family", families.iter().copied()),
     ];
-    let opening = [cases.first().copied().unwrap_or_default(), opening].map(str::to_owned).into();
+    let quantity = if quantities.contains(&OPENING) { OPENING } else { quantities.first().copied().unwrap_or_default() };
+    let opening = [quantity, cases.first().copied().unwrap_or_default(), opening].map(str::to_owned).into();
     Choices { name: "time-choices", title: "Time against size", lists, opening, drawings }.made()
 }
 
-fn against_size(overview: &Overview, all: &[TimeLine], lines: &[&TimeLine]) -> Markup {
-    let algorithms = different(all.iter().map(|line| line.algorithm));
-    let engines = different(lines.iter().map(|line| overview.engines[line.engine])).len();
-    let mut styles: BTreeMap<usize, usize> = BTreeMap::new();
+fn against_size(overview: &Overview, lines: &[&TimeLine]) -> Markup {
+    let mut methods: BTreeMap<usize, usize> = BTreeMap::new();
     let series = lines.iter().map(|line| {
-        // Lines of one colour are told apart by dashes and marks, whether they differ in engine or method.
-        let algorithm = algorithms.iter().position(|name| *name == line.algorithm).unwrap_or(0);
-        let style = Style::nth(0).coloured(algorithm);
-        let index = next(&mut styles, style.colour);
-        let name = joined(&[
-            if engines > 1 { overview.engines[line.engine] } else { "" },
-            line.algorithm,
-            if line.method == line.algorithm { "" } else { line.method },
-            if line.scalar == "f64" { "" } else { line.scalar },
-        ]);
-        let fit = line.per_call;
-        let ends = || line.points.first().zip(line.points.last());
-        let broad = |fit: Fit| ends().map(|(first, last)| [first.size, last.size].map(|size| fitted(fit, size as f64)).into());
-        Series {
-            dash: index,
-            broad: fit.and_then(broad).unwrap_or_default(),
-            ..Series::new(
-                with_exponent(name, fit.map(|fit| fit.slope), 2),
-                style.method(index),
-                line.points.iter().map(|point| time(overview, line, point)).collect(),
-            )
+        let index = next(&mut methods, line.engine);
+        let name =
+            joined(&[overview.engines[line.engine], labels::method(line.method), if line.scalar == "f64" { "" } else { line.scalar }]);
+        let points = line.points.iter().map(|point| time(overview, line, point)).collect();
+        let series = Series { dash: index, ..Series::new(name.clone(), overview.styles[line.engine].method(index), points) };
+        // Robots that no parameter leads from one to the other have no growth.
+        if line.family == UNRELATED {
+            return Series { line: Line::Marks, ..series };
         }
+        let Some(fit) = line.per_call.filter(|fit| fit.points >= FITTED) else { return series };
+        let ends = line.points.first().zip(line.points.last());
+        let broad = ends.map(|(first, last)| [first.size, last.size].map(|size| fitted(fit, size as f64)).into());
+        Series { name: format!("{name}, p = {:.2} ± {:.2}", fit.slope, fit.error), broad: broad.unwrap_or_default(), ..series }
     });
-    let title = joined(&["Time against size", lines.first().map_or("", |line| line.family)]);
+    let quantity = lines.first().map_or("", |line| labels::quantity(line.algorithm));
+    let title = joined(&["Time against size", quantity, lines.first().map_or("", |line| line.family)]);
     drawing("time-plot", &title, Axis::log("degrees of freedom nv"), Axis::log("ns per call"), series.collect())
 }
 
@@ -196,7 +199,7 @@ fn side_by_side(overview: &Overview, ratios: &[&Ratio], title: &str) -> Markup {
             }
         };
         let points = ratios.iter().filter(|ratio| way(ratio) == *candidate).map(of).collect();
-        let name = joined(&[overview.engines[*engine], method, if precision == "f64" { "" } else { precision }]);
+        let name = joined(&[overview.engines[*engine], labels::method(method), if precision == "f64" { "" } else { precision }]);
         Series { line: Line::Marks, ..Series::new(name, overview.styles[*engine].method(index), points) }
     });
     let series: Vec<Series> = series.collect();
