@@ -47,7 +47,10 @@
     const copied = make("button", { type: "button", className: "chart-copy" }, "Copy data");
     const tip = make("div", { className: "chart-tip", role: "status", hidden: true });
     const over = element("g", { class: "over", "pointer-events": "none" });
-    drawing.append(tip, make("p", { className: "chart-tools" }, back, kept, copied));
+    const link = make("a", { className: "chart-link", href: address(drawing) }, "Link");
+    link.addEventListener("pointerdown", () => { link.href = address(drawing); });
+    link.addEventListener("focus", () => { link.href = address(drawing); });
+    drawing.append(tip, make("p", { className: "chart-tools" }, back, kept, copied, link));
     svg.append(over);
     svg.setAttribute("role", "group");
     svg.setAttribute("tabindex", "0");
@@ -273,6 +276,35 @@
     for (const place of root.querySelectorAll("[data-choice]:not([hidden]) > [data-part]")) bring(place);
   }
 
+  // The address of a drawing: its lists, and what is chosen in them.
+  function address(drawing) {
+    const chosen = drawing.closest("[data-lists]");
+    if (!chosen) return `#${drawing.closest("[id]")?.id ?? ""}`;
+    const values = chosen.dataset.lists.split(" ").map((id) => byId(id)?.value ?? "");
+    return `#figure=${encodeURIComponent(JSON.stringify([chosen.id, ...values]))}`;
+  }
+
+  // The drawing that the page's address names, until it is there.
+  let asked = null;
+
+  function read() {
+    if (!location.hash.startsWith("#figure=")) return;
+    try { asked = JSON.parse(decodeURIComponent(location.hash.slice(8))); } catch { asked = null; }
+    if (Array.isArray(asked) && byId(asked[0])) seek(byId(asked[0]));
+  }
+
+  function seek(chosen) {
+    const [id, ...values] = Array.isArray(asked) ? asked : [];
+    if (!chosen || id !== chosen.id || !chosen.dataset.lists) return;
+    asked = null;
+    chosen.dataset.lists.split(" ").forEach((list, k) => { if (byId(list) && values[k] !== undefined) byId(list).value = values[k]; });
+    choose(chosen);
+    chosen.scrollIntoView();
+  }
+
+  addEventListener("hashchange", read);
+  read();
+
   // A finding leads to the drawing that shows it. Its choice is made when the list is there.
   const wanted = new Map();
 
@@ -296,6 +328,7 @@
       for (const id of chosen.dataset.lists.split(" ")) byId(id).addEventListener("change", () => choose(chosen));
       choose(chosen);
       for (const id of chosen.dataset.lists.split(" ")) take(byId(id));
+      seek(chosen);
     }
     const around = root.parentElement?.closest("[data-lists]");
     if (around) choose(around);

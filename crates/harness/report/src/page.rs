@@ -20,11 +20,11 @@ pub struct Page<'a> {
 }
 
 impl<'a> Page<'a> {
-    /// Makes the frame's own sections.
-    pub fn of(run: &'a RunInfo, rows: &[Row], drawings: &Drawings, studies: &'a [Section]) -> Self {
+    /// Makes the frame's own sections. `archive` is the checksum of the run's files.
+    pub fn of(run: &'a RunInfo, rows: &[Row], drawings: &Drawings, studies: &'a [Section], archive: Option<&str>) -> Self {
         let overview = drawings.overview;
         let own = [verdict::section(run, drawings, rows, studies), conventions::section(run)].into_iter();
-        let last = [provenance::section(run, overview), method::section(run, studies), unpassed::section(overview, rows)];
+        let last = [provenance::section(run, overview, archive), method::section(run, studies), unpassed::section(overview, rows)];
         Self { run, own: own.chain(figures::section(run, studies)).chain(last).collect(), studies }
     }
 

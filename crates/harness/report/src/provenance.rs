@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use featherbench_results::{RobotInfo, RunInfo};
+use featherbench_results::{CHECKSUMS_NAME, RobotInfo, RunInfo};
 use maud::{Markup, html};
 
 use crate::blocks::{self, opener};
@@ -14,19 +14,47 @@ use crate::section::Section;
 const PYTHON: &str = "python";
 
 /// Writes the section.
-pub fn section(run: &RunInfo, overview: &Overview) -> Section {
-    Section::new("provenance", "Provenance", body(run, overview))
+pub fn section(run: &RunInfo, overview: &Overview, archive: Option<&str>) -> Section {
+    Section::new("provenance", "Provenance", body(run, overview, archive))
 }
 
-fn body(run: &RunInfo, overview: &Overview) -> Markup {
+fn body(run: &RunInfo, overview: &Overview, archive: Option<&str>) -> Markup {
     html! {
         section #provenance {
             h2 { "Engines, machine and robots" }
             (engines(run, overview))
             div.columns { (build(run)) (machine(run)) }
             (robots(run, overview))
+            h3 #cite { "Cite this run" }
+            div.scroll { pre { (bibtex(run, archive)) } }
+            p.note {
+                "Keep the folder of the run: " code { (CHECKSUMS_NAME) } " has the checksum of each file, and the note above has that of "
+                code { (CHECKSUMS_NAME) } " (" code { "b3sum " (CHECKSUMS_NAME) } "). The link below a figure is its address, with what is chosen."
+            }
         }
     }
+}
+
+/// An entry of BibTeX: the suite, the day, and hashes that tell whether a run is this one.
+fn bibtex(run: &RunInfo, archive: Option<&str>) -> String {
+    let year: String = run.started.chars().take_while(|c| *c != '-').collect();
+    // Braces and backslashes would end an entry or begin a command.
+    let plain = |text: &str| text.replace(['{', '}', '\\'], "").replace('_', "\\_");
+    let mut note = format!("version {}", run.version);
+    for (what, hash) in
+        [("revision", run.git.revision.as_str()), ("suite file", &run.suite_hash), ("checksums.txt", archive.unwrap_or_default())]
+    {
+        if !hash.is_empty() {
+            note += &format!(", {what} {hash}");
+        }
+    }
+    let key: String = run.run.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').collect();
+    format!(
+        "@misc{{featherbench-{key},\n  author = {{{{The featherbench authors}}}},\n  title  = {{featherbench: suite {}, run {}}},\n  year   = {{{year}}},\n  note   = {{{}}}\n}}",
+        plain(&run.suite),
+        plain(&run.run),
+        plain(&note)
+    )
 }
 
 fn engines(run: &RunInfo, overview: &Overview) -> Markup {

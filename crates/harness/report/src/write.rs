@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use featherbench_results::{Row, RunInfo};
+use featherbench_results::{CHECKSUMS_NAME, Row, RunInfo, checksum};
 
 use crate::chunks::{self, NamedFile};
 use crate::drawings::{Brought, Drawings};
@@ -62,7 +62,9 @@ pub fn write(run: &RunInfo, rows: &[Row], sections: &[Section], out: &Path) -> R
     figures::files(sections).try_for_each(&mut put)?;
     put(chunks::figure_data(&figures::data(sections)?))?;
     let drawings = Drawings::of(run, rows, &overview, sections);
-    let page = Page::of(run, rows, &drawings, sections);
+    // The run's files are written already, and this one has the checksums of all.
+    let archive = std::fs::read(out.join(CHECKSUMS_NAME)).ok().map(|sums| checksum(&sums));
+    let page = Page::of(run, rows, &drawings, sections, archive.as_deref());
     for piece in parts::of(&page.sections()) {
         put(chunks::piece(&piece)?)?;
         put((format!("{}/{}.html", parts::FOLDER, piece.name), page.piece(&piece).into_bytes()))?;

@@ -162,10 +162,9 @@ impl<'a> SpeedVerdict<'a> {
         let (robot, lines) = full.swap_remove(full.len() / 2);
         let about = &overview.robots[robot];
         Some(html! {
-            p.lead #time-first {
-                "Ours on " b { (about.name) } @if let Some(nv) = about.nv { " (nv " (nv) ")" } ": "
-                @for (index, line) in lines.into_iter().enumerate() { @if index > 0 { ", " } (labels::quantity(line.quantity)) " " b.number { (time(line.ours)) } }
-                "."
+            div #time-first {
+                p.lead { "Ours on " b { (about.name) } @if let Some(nv) = about.nv { " (nv " (nv) ")" } ":" }
+                dl { @for line in lines { div { dt { (labels::quantity(line.quantity)) } dd { (time(line.ours)) } } } }
             }
         })
     }
