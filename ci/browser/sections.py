@@ -98,6 +98,9 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
         for family in page.run("return [...document.querySelector('#time-family').options].map(option => option.value)")[::-1]:
             page.choose("#time-family", family)
             yield f"times of family {family} are plotted", page.until(DRAWN, "time-plot") > 0, family
+        yield from linked(page, address)
+    if has(page, "#pairs-one"):
+        yield from pairs(page, shot)
     if has(page, "#speed-quantity"):
         yield from speed(page, shot)
     if has(page, "#speed-verdict"):
@@ -245,6 +248,37 @@ def depth(page: Browser) -> Checks:
         yield "another quantity can be plotted", bool(after) and page.until(DRAWN, "depth-plot") > 0, [before, after]
 
 
+def linked(page: Browser, address: str) -> Checks:
+    """Check that the link below a drawing leads to it, with what is chosen. Opens the page anew, and brings all of it."""
+    value = page.run("return [...document.querySelector('#time-quantity').options].at(-1).value")
+    page.choose("#time-quantity", value)
+    link = (
+        DRAWING
+        + "const link = box?.querySelector('.chart-link'); link?.dispatchEvent(new Event('pointerdown')); return link?.hash.includes(arguments[1]) && link.hash"
+    )
+    found = page.until(link, "time-plot", value)
+    page.open("about:blank")
+    page.open(address + str(found))
+    there = page.until(
+        "const list = document.querySelector('#time-quantity');"
+        " return list?.value === arguments[0] && list.getBoundingClientRect().top < innerHeight && list.value",
+        value,
+    )
+    yield "the link below a drawing leads to it", there == value and page.until(DRAWN, "time-plot") > 0, [found, there]
+    open_whole(page, address)
+
+
+def pairs(page: Browser, shot: Shot) -> Checks:
+    """Check the tables of two engines."""
+    engines = page.run("return [...document.querySelector('#pairs-one').options].map(option => option.value).slice(1)")
+    page.choose("#pairs-one", engines[-1])
+    other = page.until("const list = document.querySelector('#pairs-other'); return list.value !== arguments[0] && list.value", engines[-1])
+    lines = page.until("return [...document.querySelectorAll('#pairs table.compact tbody tr')].filter(row => row.offsetParent).length")
+    yield f"{engines[-1]} can be compared with {other} alone", other in engines and lines > 0, [engines, other, lines]
+    shot("pairs")
+    page.choose("#pairs-one", "all")
+
+
 def speed(page: Browser, shot: Shot) -> Checks:
     """Check the section on speed."""
     title = DRAWING + "const now = box?.querySelector('.ytitle').textContent ?? ''; return now.startsWith(arguments[1]) && now"
@@ -336,6 +370,12 @@ def narrow(page: Browser, shot: Shot) -> Checks:
     yield "neither does it where a part of each section has nothing to show", width[0] <= width[1], width
     page.run("document.querySelectorAll('.planted').forEach(line => line.remove())")
     shot("narrow")
+    seen = "return document.querySelector('nav a').offsetParent !== null"
+    page.click("#menu")
+    opened = page.until(seen)
+    shot("menu")
+    page.click("nav a:nth-of-type(2)")
+    yield "the navigation is a menu that opens, and closes when a section is chosen", opened and page.until(f"return !({seen[7:]})"), opened
     if boxes := drawn(page):
         page.run(DRAWING + "box.scrollIntoView({block: 'center', behavior: 'instant'}); box.querySelector('svg').focus()", boxes[0])
         page.press(ARROW_RIGHT)
