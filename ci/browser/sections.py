@@ -254,7 +254,8 @@ def linked(page: Browser, address: str) -> Checks:
     page.choose("#time-quantity", value)
     link = (
         DRAWING
-        + "const link = box?.querySelector('.chart-link'); link?.dispatchEvent(new Event('pointerdown')); return link?.hash.includes(arguments[1]) && link.hash"
+        + "const link = box?.querySelector('.chart-link'); link?.dispatchEvent(new Event('pointerdown'));"
+        + " return link?.hash.includes(arguments[1]) && link.hash"
     )
     found = page.until(link, "time-plot", value)
     page.open("about:blank")
