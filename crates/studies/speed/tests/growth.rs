@@ -40,7 +40,7 @@ fn settings_with_peers(must: u64) -> GrowthSettings {
 fn right(question: &Question, dofs: usize) -> Result<Measured, NoAnswer> {
     let n = dofs as f64;
     let seconds = if question.method == "aba" { 1e-6 * n } else { 5e-8 * n * n };
-    let memory = Memory { peak: 2_000_000 + 600 * dofs as u64, resident: 1_000_000 + 600 * dofs as u64 };
+    let memory = Memory { peak: 2_000_000 + 600_000 * dofs as u64, resident: 1_000_000 + 600_000 * dofs as u64 };
     let robot = alone::robot(&question.robot, question.seed)?;
     let real = Question { seconds: 0.0, ..question.clone() };
     let answer = alone::measure(&Featherbench::new(), &robot, &real, || None)?.answer;
@@ -92,10 +92,10 @@ fn what_grows_is_measured() {
     assert!((seconds.value.unwrap() - 2e-5 * 1.04).abs() < 1e-12 && seconds.ci_low <= seconds.value && seconds.value <= seconds.ci_high);
     let exponent = value("time_exponent", "");
     assert!((exponent.value.unwrap() - 1.0).abs() < 1e-9 && exponent.ci_low < exponent.ci_high, "{exponent:?}");
-    assert_eq!(value("memory_per_dof", "").value, Some(600.0));
+    assert_eq!(value("memory_per_dof", "").value, Some(600_000.0));
     assert_eq!(
         (value("resident", "chain:n=40,layout=spatial").value, value("peak", "chain:n=40,layout=spatial").value),
-        (Some(1_024_000.0), Some(2_024_000.0))
+        (Some(25_000_000.0), Some(26_000_000.0))
     );
     assert_eq!((value("largest", "").value, value("largest", "").reason.as_str()), (Some(80.0), ""));
     assert!(value("error", "chain:n=80,layout=spatial").value.unwrap() < 1e-13);

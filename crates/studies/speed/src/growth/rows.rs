@@ -83,11 +83,15 @@ fn of_line(context: &Context, cell: &Cell, grown: &Grown) -> Vec<Row> {
     rows
 }
 
-/// Growth of the resident memory per dof, between the last two sizes.
+/// Bytes from which a growth of the resident memory says something: the heap takes and returns hundreds of kilobytes at a time, and where a
+/// process has what it was given changes that from run to run.
+const COARSE: f64 = 1e7;
+
+/// Growth of the resident memory per dof, between the last two sizes; `None` if so little grew that chance makes it.
 fn memory_per_dof(points: &[Point]) -> Option<f64> {
     let [.., before, last] = points else { return None };
     let grown = last.resident? as f64 - before.resident? as f64;
-    (last.dofs > before.dofs).then(|| grown / (last.dofs - before.dofs) as f64)
+    (last.dofs > before.dofs && grown >= COARSE).then(|| grown / (last.dofs - before.dofs) as f64)
 }
 
 /// The exponent p of `resident − resident at the smallest size ~ nᵖ` over the last two decades: program and libraries are in both.
@@ -95,7 +99,7 @@ fn memory_exponent(points: &[Point]) -> Option<f64> {
     let (first, last) = (points.first()?, points.last()?);
     let grown = |point: &Point| Some((point.dofs as f64, point.resident?.checked_sub(first.resident?)? as f64));
     let grown: Option<Vec<(f64, f64)>> = points[1..].iter().filter(|point| point.dofs * 100 >= last.dofs).map(grown).collect();
-    power_law(grown?.into_iter().filter(|(_, bytes)| *bytes > 0.0)).map(|fit| fit.slope)
+    power_law(grown?.into_iter().filter(|(_, bytes)| *bytes >= COARSE)).map(|fit| fit.slope)
 }
 
 /// The largest size that was answered, and why no larger one was. It is an error if a size that every engine must answer was not.

@@ -45,10 +45,16 @@ pub(super) fn of_median(blocks: &[f64], random: &mut Random) -> Interval {
     Interval::of(median(blocks), &draws)
 }
 
-/// The exponent p of time ~ nᵖ over the last two decades of sizes, of (n, blocks); `None` if fewer than three sizes are there.
+/// The fewest sizes of a fit: through three a line goes nearly always.
+const FEWEST: usize = 4;
+
+/// The exponent p of time ~ nᵖ over the last two decades of sizes, of (n, blocks); `None` if fewer than [`FEWEST`] sizes are there.
 pub(super) fn of_exponent(sizes: &[(f64, &[f64])], random: &mut Random) -> Option<Interval> {
     let largest = sizes.last()?.0;
     let last: Vec<_> = sizes.iter().filter(|(n, _)| *n >= DECADES * largest).collect();
+    if last.len() < FEWEST {
+        return None;
+    }
     let value = power_law(last.iter().map(|(n, blocks)| (*n, median(blocks))))?.slope;
     let draw = |random: &mut Random| Some(power_law(last.iter().map(|(n, blocks)| (*n, median(&drawn(blocks, random)))))?.slope);
     let draws: Option<Vec<f64>> = (0..DRAWS).map(|_| draw(random)).collect();
