@@ -1,7 +1,7 @@
 """Opens a report in Chromium from a file:// address and uses it as a reader would.
 
     python=target/oracles/venv/bin/python
-    $python -m pytest -c oracles/pyproject.toml ci/browser_test.py --report FOLDER [--shots FOLDER] [-k use|axe|robots]
+    $python -m pytest -c oracles/pyproject.toml ci/browser_test.py --report FOLDER [--shots FOLDER] [-k use|axe|robots|layout]
 
 Needs pytest and Selenium (`ci/python-tools`), and chromium and chromedriver on the path. Each check is a subtest; `-v` lists them.
 The rules of accessibility are those of axe-core, which npm brings once, at a pinned version and checksum, into target/axe.
@@ -16,6 +16,7 @@ from collections.abc import Iterator
 import pytest
 from browser.axe import accessible
 from browser.client import Browser
+from browser.layout import laid_out
 from browser.page import Checks
 from browser.robots import robots
 from browser.sections import checks
@@ -69,3 +70,8 @@ def test_axe(subtests: pytest.Subtests, page: Browser, report: pathlib.Path) -> 
 def test_robots(subtests: pytest.Subtests, page: Browser, report: pathlib.Path) -> None:
     """Drawings of robots, turned."""
     hold(subtests, robots(page, report))
+
+
+def test_layout(subtests: pytest.Subtests, page: Browser, report: pathlib.Path) -> None:
+    """Layout of every page."""
+    hold(subtests, laid_out(page, report))

@@ -4,7 +4,7 @@ use crate::args::DiffArgs;
 use crate::fail::Fail;
 use crate::message::{self, say, tell};
 use ::featherbench_results::{
-    Apart, Change, Changed, Diff, ERROR_FACTOR, Row, RunInfo, TIME_NOISE, TIME_WIDTHS, atomic_write, diff, read_run,
+    Apart, Change, Changed, Diff, ERROR_FACTOR, FALSE_SHARE, Row, RunInfo, TIME_NOISE, atomic_write, diff, read_run,
 };
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -139,8 +139,9 @@ fn summary(before: &RunInfo, after: &RunInfo, found: &Diff) -> String {
     }
     let _ = write!(
         text,
-        ". An error changes by a factor of {ERROR_FACTOR}; a time when the ratio is beyond ±{:.0} % and {TIME_WIDTHS} times the width of both intervals",
-        100.0 * TIME_NOISE
+        ". An error changes by a factor of {ERROR_FACTOR}; a time when the ratio is beyond ±{:.0} % and beyond chance (of those told, at most {:.0} % are chance)",
+        100.0 * TIME_NOISE,
+        100.0 * FALSE_SHARE
     );
     if found.common != 1.0 {
         let _ = write!(text, ", over the factor that all have in common, which is {:.3}", found.common);

@@ -76,7 +76,7 @@ pub use layout::DENSE_LIMIT;
 pub use robot::class::RobotClass;
 pub use robot::file::{FileBase, FileContent, FileFormat, RobotFile, WATER};
 pub use robot::import::{Import, ImportNote, ImportVariant};
-pub use robot::relocation::Relocation;
+pub use robot::relocation::{Relocation, STACK_PLACES, on_stack_at};
 pub use robot::source::RobotSource;
 pub use robot::{Robot, Route};
 pub use run::cell::{Cell, Outcome};

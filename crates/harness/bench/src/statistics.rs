@@ -1,29 +1,34 @@
 //! Conclusions from the blocks of a paired experiment.
 //!
-//! Each round gives every candidate one block, in random order. A *ratio* is formed within a round, of two blocks that ran within
-//! milliseconds of each other. Then the median over the rounds of a process is taken. A disturbance that lasts for a while (another program, a
-//! processor's frequency) is on both sides of such a ratio and cancels. In the ratio of two medians it need not.
+//! Each round gives every candidate one block, in random order. A process's number for a candidate is the *lower decile* of its blocks. A
+//! disturbance (another program, a processor's frequency, an unlucky layout of the memory) makes blocks longer, never shorter. So the decile
+//! is near the time without it, as the median is not: between processes it scatters half as much. A ratio is that of two deciles of one
+//! process, whose blocks alternated.
 //!
 //! Where a process has its code and data is an accident that lasts as long as it does. So an experiment is made in several processes, one
-//! after another, over the length of the study. Each gives one number, its median. An estimate is the geometric mean of these, and its
-//! interval is Student's, of their logarithms: whatever differs between processes or moments is in it.
+//! after another, over the length of the study. Each gives one number. In one of ten something else went on all the while. So an estimate is
+//! the geometric mean without the least and the largest of them, and its interval is that of a trimmed mean (Yuen, Biometrika 61, 1974):
+//! whatever differs between processes or moments is in it.
 
-/// Processes of an experiment. With n of them the interval has the half-width t·s/√n: 1.24 s for five, 0.72 s for ten, 0.47 s for twenty.
+use crate::robot::relocation::STACK_PLACES;
+use featherbench_results::STUDENT;
+
+/// Processes of an experiment. With n of them the interval has about the half-width t·s/√n: 1.24 s for five, 0.72 s for ten, 0.47 s for twenty.
 pub const PROCESSES: usize = 10;
-/// Epochs of a process (rounds in one layout of the memory). Times vary more between layouts than between rounds of one layout.
-pub const EPOCHS: usize = 6;
+/// Epochs of a process (rounds in one layout of the memory): two for each place of the stack in a cache line. Times vary more between
+/// layouts than between rounds of one layout.
+pub const EPOCHS: usize = 2 * STACK_PLACES;
+/// The share of the processes that an estimate is a mean of.
+const KEPT: f64 = 0.8;
 /// Two engines differ if the interval of their ratio is farther from one than this.
 pub const NOISE: f64 = 0.02;
 /// The interval of an A/A ratio must be within 1 ± this: beyond it no time of the experiment counts. A wider interval within it needs no
 /// rule: whatever made it wide made the others wide.
 pub const VOID: f64 = 0.05;
-/// The 0.975 quantile of Student's distribution with [`PROCESSES`] − 1 degrees of freedom: intervals hold 95 %.
-const STUDENT: f64 = 2.262_157_162_798_205;
-
 /// A value with its interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The geometric mean of the processes' medians.
+    /// The geometric mean of the processes' numbers, without the least and the largest.
     pub value: f64,
     /// Lower end of its 95 % interval.
     pub low: f64,
@@ -43,31 +48,35 @@ pub enum Pace {
 }
 
 impl Estimate {
-    /// The estimate of the medians of [`PROCESSES`] processes. NaN if there are not as many, or one is no positive number.
-    pub fn of(medians: &[f64]) -> Self {
-        let good = medians.len() == PROCESSES && medians.iter().all(|&median| median > 0.0 && median.is_finite());
+    /// The estimate of the numbers of [`PROCESSES`] processes. NaN if there are not as many, or one is not positive.
+    pub fn of(numbers: &[f64]) -> Self {
+        let good = numbers.len() == PROCESSES && numbers.iter().all(|&number| number > 0.0 && number.is_finite());
         if !good {
             return Self { value: f64::NAN, low: f64::NAN, high: f64::NAN };
         }
-        let count = PROCESSES as f64;
-        // Over the first, so that equal medians give themselves to the last bit.
-        let logs = || medians.iter().map(|median| (median / medians[0]).ln());
-        let mean = logs().sum::<f64>() / count;
-        let variance = logs().map(|log| (log - mean) * (log - mean)).sum::<f64>() / (count - 1.0);
-        let half = STUDENT * (variance / count).sqrt();
-        let value = medians[0] * mean.exp();
+        // Over the first, so that equal numbers give themselves to the last bit.
+        let mut logs: Vec<f64> = numbers.iter().map(|number| (number / numbers[0]).ln()).collect();
+        logs.sort_unstable_by(f64::total_cmp);
+        let (count, kept) = (PROCESSES as f64, &logs[1..PROCESSES - 1]);
+        let mean = kept.iter().sum::<f64>() / kept.len() as f64;
+        // The ends count as their neighbours: Winsorized.
+        logs[0] = logs[1];
+        logs[PROCESSES - 1] = logs[PROCESSES - 2];
+        let middle = logs.iter().sum::<f64>() / count;
+        let variance = logs.iter().map(|log| (log - middle) * (log - middle)).sum::<f64>() / (count - 1.0);
+        let half = STUDENT * (variance / count).sqrt() / KEPT;
+        let value = numbers[0] * mean.exp();
         Self { value, low: value * (-half).exp(), high: value * half.exp() }
     }
 
     /// The time of a candidate, of its blocks process by process.
     pub fn time<'s>(processes: impl IntoIterator<Item = &'s [f64]>) -> Self {
-        Self::of(&processes.into_iter().map(|blocks| median(&mut blocks.to_vec())).collect::<Vec<_>>())
+        Self::of(&processes.into_iter().map(undisturbed).collect::<Vec<_>>())
     }
 
     /// The ratio of a candidate's time to another's, of the blocks of both process by process.
     pub fn ratio<'s>(processes: impl IntoIterator<Item = (&'s [f64], &'s [f64])>) -> Self {
-        let median_ratio = |(of, over): (&[f64], &[f64])| median(&mut of.iter().zip(over).map(|(a, b)| a / b).collect::<Vec<_>>());
-        Self::of(&processes.into_iter().map(median_ratio).collect::<Vec<_>>())
+        Self::of(&processes.into_iter().map(|(of, over)| undisturbed(of) / undisturbed(over)).collect::<Vec<_>>())
     }
 
     /// The ratio, whose interval is wider by what an A/A ratio misses 1: two copies of one program differ by so much in these processes.
@@ -95,6 +104,11 @@ impl Estimate {
         (!good)
             .then(|| format!("the second copy of featherbench over the first is {value:.4} [{low:.4}, {high:.4}]: not 1 within ± {VOID}"))
     }
+}
+
+/// The lower decile of the blocks of a process. NaN without blocks, or if one is NaN.
+pub fn undisturbed(blocks: &[f64]) -> f64 {
+    if blocks.iter().any(|block| block.is_nan()) { f64::NAN } else { quantile_of(blocks, 0.1) }
 }
 
 /// The median of the samples, or the mean of the two in the middle; it reorders them. NaN without samples, or if one is NaN.

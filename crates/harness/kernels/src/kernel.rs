@@ -153,10 +153,8 @@ pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
         Quantity::BodyJacobian,
     ];
     // A body Jacobian has 6·nv numbers, most of them zero on big robots. Only its nonzero columns would be worth timing. An inverse is dense:
-    // the check of its answers takes O(nv³) for each state of the stream, as second derivatives by dual numbers do.
-    let dense = |quantity: &Quantity| {
-        matches!(quantity, Quantity::BodyJacobian | Quantity::MassMatrixInverse) || Quantity::SECOND_DERIVATIVES.contains(quantity)
-    };
+    // the check of its answers takes O(nv³) for each state of the stream, as second derivatives by dual numbers do. Derivatives have nv² numbers.
+    let dense = |quantity: &Quantity| matches!(quantity, Quantity::BodyJacobian | Quantity::MassMatrixInverse) || quantity.is_derivative();
     let quantities = quantities.into_iter().chain(Quantity::DERIVATIVES).chain(Quantity::SECOND_DERIVATIVES);
     quantities
         .filter(|quantity| !dense(quantity) || robot.states.nv <= DENSE_LIMIT)

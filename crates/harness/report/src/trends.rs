@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use featherbench_results::{BESIDE, ChangePoint, ERROR_FACTOR, ERROR_FLOOR, Row, TIME_NOISE, TIME_WIDTHS, Trend, Trended, Verdict, trends};
+use featherbench_results::{BESIDE, ChangePoint, ERROR_FACTOR, ERROR_FLOOR, Row, TIME_NOISE, Trend, Trended, Verdict, trends};
 use maud::{Markup, PreEscaped, html};
 
 use crate::changes::{Side, versions};
@@ -131,9 +131,8 @@ fn changes(all: &[Trend], runs: &[Side]) -> Markup {
         h3 { "Change points: " (confirmed) " confirmed, " (found.len() - confirmed) " not yet" }
         p.note {
             "A change point lies between two runs if each of the last " (BESIDE) " values before it is apart from each of the first " (BESIDE)
-            " after it, on the same side; so one run out of line is none. Times are apart when their ratio is beyond "
-            (format!("{:.0} %", 100.0 * TIME_NOISE)) " and " (TIME_WIDTHS) " times the width of both intervals, errors by a factor of " (ERROR_FACTOR) ", counts when they differ. "
-            "Confirmed: there are " (BESIDE) " values on each side."
+            " after it, on the same side; so one run out of line is none. Times are apart when their intervals are and their ratio is beyond "
+            (format!("{:.0} %", 100.0 * TIME_NOISE)) ", errors by a factor of " (ERROR_FACTOR) ", counts when they differ. Confirmed: there are " (BESIDE) " values on each side."
         }
         (listed(&found[..confirmed], runs))
         @if found.len() > confirmed {

@@ -9,14 +9,17 @@ use std::collections::BTreeMap;
 pub const ERROR_FACTOR: f64 = 4.0;
 /// Errors below this count as zero: four roundings.
 pub const ERROR_FLOOR: f64 = 8.9e-16;
-/// Two times differ if their ratio is beyond this, and beyond [`TIME_WIDTHS`].
-pub const TIME_NOISE: f64 = 0.02;
-/// Two times differ if the logarithm of their ratio is beyond this multiple of √(h₁² + h₂²), with the half-widths h of the logarithms of their
-/// 95 % intervals.
+/// Two times differ if their ratio is beyond this, and chance is not a likely cause.
+pub const TIME_NOISE: f64 = 0.01;
+/// Half-widths of the intervals of times are so many standard errors: the 0.975 quantile of Student's distribution with seven degrees of
+/// freedom, of ten processes without the least and the largest. Intervals hold 95 %.
+pub const STUDENT: f64 = 2.364_624_251_592_784_4;
+/// The share of the times that are told as changed, and changed by chance alone, is on average at most this.
 ///
-/// These are 2.26 standard errors each: Student's quantile of ten processes. So the multiple is 5.4 standard errors of the difference. Chance
-/// alone is beyond in 4 of 10⁵ rows (Student's distribution with 18 degrees of freedom): in one of a hundred pairs of runs with 250 times.
-pub const TIME_WIDTHS: f64 = 2.4;
+/// Every time has its *p-value*: how likely chance makes a difference as large, by Student's distribution with 14 degrees of freedom. From the
+/// smallest on, the k-th of n counts as changed if it, or a later one, is at most k/n of this share (Benjamini and Hochberg, J. R. Stat. Soc. B
+/// 57, 1995). So one slower time among hundreds needs more evidence than a hundred slower ones.
+pub const FALSE_SHARE: f64 = 0.05;
 /// The fewest times of which a common factor is formed.
 pub const COMMON: usize = 20;
 
@@ -29,7 +32,7 @@ words! {
         Count = "count",
         /// The error changed by more than [`ERROR_FACTOR`].
         Error = "error",
-        /// Its time: the ratio, over the factor that all times have in common, is beyond the intervals and the noise.
+        /// Its time: the ratio, over the factor that all times have in common, is beyond the noise and beyond chance.
         Time = "time",
         /// It is in the first run only.
         Gone = "gone",
@@ -78,7 +81,11 @@ pub fn diff<'a>(before: &'a [Row], after: &'a [Row]) -> Diff<'a> {
     let (old, new) = (keyed(before), keyed(after));
     let old_rows: BTreeMap<&Key, &Row> = old.iter().map(|(key, row)| (key, *row)).collect();
     let new_rows: BTreeMap<&Key, &Row> = new.iter().map(|(key, row)| (key, *row)).collect();
-    let common = common(new.iter().filter_map(|(key, row)| Some((*old_rows.get(key)?, *row))));
+    let both = || new.iter().filter_map(|(key, row)| Some((*old_rows.get(key)?, *row)));
+    let common = common(both());
+    let shift = |row: &Row| if is_absolute(row) { common } else { 1.0 };
+    let times = both().filter(|(was, row)| is_time(row) && was.valid && row.valid && was.verdict == row.verdict);
+    let level = level(times.filter_map(|(was, row)| p_value(was, row, shift(row))).collect());
     let mut diff = Diff { changes: Vec::new(), compared: 0, invalid: 0, common };
     for (key, row) in &new {
         let Some(&was) = old_rows.get(key) else {
@@ -94,8 +101,7 @@ pub fn diff<'a>(before: &'a [Row], after: &'a [Row]) -> Diff<'a> {
         let change = if was.verdict != row.verdict {
             Some(Change::Verdict)
         } else if timed {
-            let shift = if is_absolute(row) { common } else { 1.0 };
-            apart(was, row, shift).then_some(Change::Time)
+            apart(was, row, shift(row), level).then_some(Change::Time)
         } else {
             moved(was, row)
         };
@@ -186,15 +192,37 @@ pub(crate) fn half_width(row: &Row) -> f64 {
     if value.is_nan() || ends == [value; 2] { 0.0 } else { 0.5 * (ends[0] / ends[1]).ln() }
 }
 
-/// The logarithm of a ratio of times with these half-widths is beyond noise from here on.
-pub(crate) fn noise_of(was: f64, is: f64) -> f64 {
-    let (widths, least) = (TIME_WIDTHS * was.hypot(is), TIME_NOISE.ln_1p());
-    if widths > least { widths } else { least }
+/// How likely chance makes the logarithm of the ratio of two times, over a common factor, as large as it is. `None` if it is NaN.
+fn p_value(was: &Row, row: &Row, common: f64) -> Option<f64> {
+    let log = (row.value? / was.value? / common).ln().abs();
+    let error = half_width(was).hypot(half_width(row)) / STUDENT;
+    // A difference of two numbers without intervals is one.
+    let t = if log == 0.0 { 0.0 } else { log / error };
+    (!t.is_nan()).then(|| beyond(t))
 }
 
-/// Whether two times differ by more than a common factor: their ratio over it is beyond the noise of both; or one of the two is NaN.
-fn apart(before: &Row, after: &Row, common: f64) -> bool {
+/// How likely Student's variable with 14 degrees of freedom is beyond ±t (Abramowitz and Stegun, Handbook of Mathematical Functions, 26.7.4).
+fn beyond(t: f64) -> f64 {
+    const FREEDOM: u32 = 14;
+    let angle = (t / f64::from(FREEDOM).sqrt()).atan();
+    let square = angle.cos().powi(2);
+    // 1 + 1/2 c² (1 + 3/4 c² (1 + 5/6 c² (…)))
+    let series = (1..FREEDOM / 2).rev().fold(1.0, |sum, k| 1.0 + sum * square * f64::from(2 * k - 1) / f64::from(2 * k));
+    1.0 - angle.sin() * series
+}
+
+/// The p-value up to which times have changed, so that [`FALSE_SHARE`] holds; negative if none has.
+fn level(mut p_values: Vec<f64>) -> f64 {
+    p_values.sort_unstable_by(f64::total_cmp);
+    let count = p_values.len() as f64;
+    let within = |(k, p): &(usize, f64)| *p <= FALSE_SHARE * (k + 1) as f64 / count;
+    p_values.into_iter().enumerate().filter(within).map(|(_, p)| p).last().unwrap_or(-1.0)
+}
+
+/// Whether two times differ by more than a common factor: their ratio over it is beyond the noise, and chance is not a likely cause; or one of
+/// the two is NaN.
+fn apart(before: &Row, after: &Row, common: f64, level: f64) -> bool {
     let (value, other) = (after.value.unwrap_or(f64::NAN), before.value.unwrap_or(f64::NAN));
-    let log = (value / other / common).ln();
-    value.is_nan() != other.is_nan() || log.abs() > noise_of(half_width(before), half_width(after))
+    let log = (value / other / common).ln().abs();
+    value.is_nan() != other.is_nan() || log > TIME_NOISE.ln_1p() && p_value(before, after, common).is_some_and(|p| p <= level)
 }

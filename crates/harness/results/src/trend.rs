@@ -1,9 +1,9 @@
 //! Trends: one number over several runs of a suite, and where it changed beyond noise.
 //!
 //! # The rule
-//! Two values of a number are *apart* as in [`diff`](crate::diff):
+//! Two values of a number are *apart*:
 //!
-//! - Times are apart when their ratio is beyond [`TIME_NOISE`](crate::TIME_NOISE) and, by [`TIME_WIDTHS`](crate::TIME_WIDTHS), beyond both intervals.
+//! - Times are apart when their intervals are, and their ratio is beyond [`TIME_NOISE`](crate::TIME_NOISE).
 //! - Errors are apart when they differ by a factor of [`ERROR_FACTOR`].
 //! - Counts are apart when they differ.
 //!
@@ -14,8 +14,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::diff::{Key, half_width, is_count, is_time, keyed, noise_of};
-use crate::{ERROR_FACTOR, ERROR_FLOOR, Kind, Row};
+use crate::diff::{Key, half_width, is_count, is_time, keyed};
+use crate::{ERROR_FACTOR, ERROR_FLOOR, Kind, Row, TIME_NOISE};
 
 /// Values on each side of a change point.
 pub const BESIDE: usize = 3;
@@ -117,7 +117,10 @@ impl Trend<'_> {
         match self.kind {
             Trended::Count => b.value > a.value,
             Trended::Error => floored(b.value) > ERROR_FACTOR * floored(a.value),
-            Trended::Time => (b.value / a.value).ln() > noise_of(a.half_width, b.half_width),
+            Trended::Time => {
+                let log = (b.value / a.value).ln();
+                log > a.half_width + b.half_width && log > TIME_NOISE.ln_1p()
+            }
         }
     }
 }

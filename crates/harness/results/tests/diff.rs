@@ -1,6 +1,8 @@
 //! What counts as a change between two runs.
 
-use featherbench_results::{COMMON, Change, ERROR_FACTOR, ERROR_FLOOR, Kind, Relation, Row, TIME_NOISE, TIME_WIDTHS, Verdict, diff};
+use featherbench_results::{
+    COMMON, Change, ERROR_FACTOR, ERROR_FLOOR, FALSE_SHARE, Kind, Relation, Row, STUDENT, TIME_NOISE, Verdict, diff,
+};
 
 fn error(model: &str, value: f64, bound: f64) -> Row {
     let row = Row { study: "agreement".into(), robot: model.into(), engine: "drake".into(), quantity: "fd".into(), ..Row::default() };
@@ -45,24 +47,47 @@ fn verdicts_errors_counts_and_rows() {
     assert_eq!(changes(&[error("a", 1e-15, 1e-14)], &[skipped]), [Change::Verdict]);
 }
 
+/// Rows of times with these ratios to 100 ns and this relative half-width.
+fn times(ratios: &[f64], spread: f64) -> Vec<Row> {
+    let of = |(k, ratio): (usize, &f64)| Row { robot: format!("robot {k}"), ..time(100.0 * ratio, spread).remove(0) };
+    ratios.iter().enumerate().map(of).collect()
+}
+
+/// Student's quantile for 14 degrees of freedom, by the density (1 + t²/14)^(−15/2), but for a factor, and Simpson's rule.
+fn quantile(beyond: f64) -> f64 {
+    let density = |t: f64| (1.0 + t * t / 14.0).powf(-7.5);
+    // t = u/(1 − u²) takes u from 0 to 1 over all positive numbers.
+    let until = |end: f64| {
+        let h = end / 20_000.0;
+        let of = |u: f64| density(u / (1.0 - u * u)) * (1.0 + u * u) / (1.0 - u * u).powi(2);
+        (0..20_000).map(|k| f64::from(k) * h).map(|u| h / 6.0 * (of(u) + 4.0 * of(u + 0.5 * h) + of(u + h))).sum::<f64>()
+    };
+    let (whole, mut low, mut high) = (until(1.0 - 1e-9), 0.0, 1.0 - 1e-9);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if 1.0 - until(middle) / whole > beyond { low = middle } else { high = middle }
+    }
+    low / (1.0 - low * low)
+}
+
 #[test]
-fn times_change_beyond_the_noise_and_the_widths_of_their_intervals() {
+fn times_change_beyond_the_noise_and_beyond_chance() {
     let base = time(100.0, 0.005);
     for (after, expected) in [
         (time(105.0, 0.005), vec![Change::Time]),
         (time(95.0, 0.005), vec![Change::Time]),
-        (time(101.9, 0.001), vec![]), // apart, and within the noise that is always there
-        (time(105.0, 0.06), vec![]),  // beyond the noise, and the intervals overlap
-        (time(105.0, 0.03), vec![]),  // the intervals are apart, but of many rows chance makes one such
+        (time(100.9, 0.001), vec![]), // apart, and within the noise that is always there
+        (time(105.0, 0.06), vec![]),  // beyond the noise, and as likely by chance
     ] {
         assert_eq!(changes(&base, &after), expected, "{:?}", after[0].value);
     }
-    // From here on: 2.4 √(h₁² + h₂²), with the half-widths of logarithms.
+    // A single time changes where chance alone is as far with this probability: at so many of its standard errors, of logarithms.
     let half = |spread: f64| 0.5 * ((1.0 + spread) / (1.0 - spread)).ln();
-    let edge = 100.0 * (TIME_WIDTHS * half(0.005).hypot(half(0.03))).exp();
-    assert_eq!(changes(&base, &time(edge - 1e-9, 0.03)), []);
-    assert_eq!(changes(&base, &time(edge + 1e-9, 0.03)), [Change::Time]);
-    assert_eq!(changes(&time(edge + 1e-9, 0.03), &base), [Change::Time]);
+    let at = |p: f64| 100.0 * (quantile(p) * half(0.005).hypot(half(0.03)) / STUDENT).exp();
+    let edge = at(FALSE_SHARE);
+    assert_eq!(changes(&base, &time(edge - 1e-6, 0.03)), []);
+    assert_eq!(changes(&base, &time(edge + 1e-6, 0.03)), [Change::Time]);
+    assert_eq!(changes(&time(edge + 1e-6, 0.03), &base), [Change::Time]);
     let mut invalid = time(150.0, 0.005);
     invalid[0] = invalid[0].clone().invalid("the machine was not quiet");
     let found = diff(&base, &invalid);
@@ -71,6 +96,63 @@ fn times_change_beyond_the_noise_and_the_widths_of_their_intervals() {
         time(value, 0.005).into_iter().map(|row| Row { metric: row.metric.replace("ns_per_call", "ratio"), ..row }).collect::<Vec<_>>()
     };
     assert_eq!(changes(&ratios(2.0), &ratios(2.2)), [Change::Time]);
+}
+
+/// One change among many times needs more evidence than each of many changes (Benjamini and Hochberg).
+#[test]
+fn a_time_among_many_changes_if_chance_makes_no_such_among_so_many() {
+    const TIMES: usize = 200;
+    let base = times(&[1.0; TIMES], 0.03);
+    let apart = |p: f64| (quantile(p) * 2.0_f64.sqrt() * 0.5 * (1.03_f64 / 0.97).ln() / STUDENT).exp();
+    let found = |count: usize, p: f64| {
+        let mut ratios = [1.0; TIMES];
+        ratios[..count].fill(apart(p));
+        changes(&base, &times(&ratios, 0.03)).len()
+    };
+    for count in [1, 10, 50] {
+        let level = FALSE_SHARE * count as f64 / TIMES as f64;
+        assert_eq!([found(count, 0.99 * level), found(count, 1.01 * level)], [count, 0], "{count}");
+    }
+    // A smaller p-value that is not good enough alone is taken along by a larger one that is, and a larger one takes itself.
+    let step = |k: usize| FALSE_SHARE * k as f64 / TIMES as f64;
+    let mut ratios = [1.0; TIMES];
+    ratios[..3].copy_from_slice(&[apart(1.5 * step(1)), apart(1.2 * step(2)), apart(0.9 * step(3))]);
+    assert_eq!(changes(&base, &times(&ratios, 0.03)).len(), 3);
+    ratios[2] = apart(1.1 * step(3));
+    assert_eq!(changes(&base, &times(&ratios, 0.03)).len(), 0);
+}
+
+/// Of times without a change, seldom a run has one that is told; of such with changes, few are told that have none.
+#[test]
+fn of_what_is_told_chance_made_a_small_share() {
+    // A linear congruential generator (Knuth's MMIX); its upper bits from 0 to 1.
+    let mut state = 45_u64;
+    let mut unit = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 * 2.0_f64.powi(-53)
+    };
+    // The mean of eight numbers with a deviation of 1 %, and the half-width of its interval.
+    let mut drawn = |ratio: f64| {
+        let logs: Vec<f64> = (0..8).map(|_| 0.01 * (0..12).map(|_| unit() - 0.5).sum::<f64>()).collect();
+        let mean = logs.iter().sum::<f64>() / 8.0;
+        let variance = logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / 7.0;
+        let (value, half) = (100.0 * ratio * mean.exp(), STUDENT * (variance / 8.0).sqrt());
+        time(1.0, 0.0).remove(0).measured(value, value * (-half).exp(), value * half.exp())
+    };
+    let mut run = |slower: usize| -> Vec<Row> {
+        (0..400).map(|k| Row { robot: format!("robot {k}"), ..drawn(if k < slower { 1.04 } else { 1.0 }) }).collect()
+    };
+    let [mut alarms, mut told, mut by_chance] = [0, 0, 0];
+    for _ in 0..50 {
+        alarms += changes(&run(0), &run(0)).len();
+        let (before, after) = (run(0), run(40));
+        let found = diff(&before, &after).changes;
+        told += found.len();
+        by_chance += found.iter().filter(|changed| !(0..40).any(|k| changed.after.unwrap().robot == format!("robot {k}"))).count();
+    }
+    // Of 20 000 times without a change: one in a thousand at most. Of 2000 that changed: almost all.
+    assert!(alarms <= 20 && told - by_chance >= 1990, "{alarms} alarms; {told} told, {by_chance} by chance");
+    assert!((by_chance as f64) < FALSE_SHARE * told as f64, "{by_chance} of {told}");
 }
 
 /// A row of a study without a gate.
@@ -217,8 +299,8 @@ fn times_without_intervals_are_compared_as_they_are() {
     for metric in ["ns_per_call", "ratio"] {
         assert_eq!(changes(&bare(metric, 100.0), &bare(metric, 103.0)), [Change::Time]);
         assert_eq!(changes(&bare(metric, 103.0), &bare(metric, 100.0)), [Change::Time]);
-        assert_eq!(changes(&bare(metric, 100.0), &bare(metric, 101.5)), []);
-        assert_eq!(changes(&bare(metric, 101.5), &bare(metric, 100.0)), []);
+        assert_eq!(changes(&bare(metric, 100.0), &bare(metric, 100.5)), []);
+        assert_eq!(changes(&bare(metric, 100.5), &bare(metric, 100.0)), []);
         // Exactly the smallest noise, and a little more.
         let edge = 100.0 * (1.0 + TIME_NOISE);
         assert_eq!(changes(&bare(metric, 100.0), &bare(metric, edge - 1e-9)), []);

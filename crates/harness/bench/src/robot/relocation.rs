@@ -1,4 +1,4 @@
-//! Changes the heap, so that later allocations get other addresses (memory layout randomization).
+//! Changes where data are: other addresses of later allocations, and of the stack (memory layout randomization).
 
 use featherbench_robots::Random;
 use std::hint::black_box;
@@ -24,9 +24,50 @@ impl Relocation {
     }
 }
 
+/// Places of the stack within a cache line: it is aligned to 16 bytes, and vectors of 32 or 64 may cross a line.
+pub const STACK_PLACES: usize = 4;
+/// Steps of the stack that [`on_stack_at`] knows. They span a page.
+const STEPS: usize = 256;
+
+/// Runs something with the stack `step` times 16 bytes lower than for the step 0; steps repeat after a page.
+///
+/// Where the stack is within a cache line is decided when a process starts. It changed times by a fifth.
+pub fn on_stack_at(step: usize, run: &mut dyn FnMut()) {
+    /// So many frames, each with room for some bytes.
+    #[inline(never)]
+    fn frames<const BYTES: usize>(count: usize, run: &mut dyn FnMut()) {
+        let mut room = [0_u8; BYTES];
+        black_box(&mut room);
+        if count == 0 {
+            run()
+        } else {
+            frames::<BYTES>(count - 1, run)
+        }
+        black_box(&mut room);
+    }
+    // A frame of the second kind is 16 bytes larger, whatever else is in it.
+    let larger = step % STEPS;
+    frames::<16>(STEPS - larger, &mut || frames::<32>(larger, run));
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn steps_of_the_stack_are_16_bytes() {
+        let place = |step| {
+            let mut place = 0;
+            on_stack_at(step, &mut || {
+                let here = 0_u8;
+                place = std::ptr::from_ref(black_box(&here)).addr();
+            });
+            place
+        };
+        for step in 1..=STEPS {
+            assert_eq!(place(0).wrapping_sub(place(step)), 16 * (step % STEPS), "step {step}");
+        }
+    }
 
     #[test]
     fn what_follows_lies_elsewhere_each_time() {

@@ -9,6 +9,7 @@
 //! The usual method is, as in the figures, the first of those with the most robots. A ratio that does not count is never used. Without a ratio
 //! of this run, an engine has those that other machines recorded.
 
+mod machines;
 mod section;
 
 use featherbench_bench::statistics::quantile_of;
@@ -20,8 +21,10 @@ use std::collections::BTreeMap;
 
 pub(crate) use section::section;
 
-/// Quantities with errors and times. Engines are ranked by the first of which one has errors.
+/// Quantities with errors. Engines are ranked by the first of which one has errors.
 const QUANTITIES: [&str; 3] = ["fd", "id", "mass_matrix"];
+/// Quantities with times.
+const TIMED: [&str; 4] = ["fd", "id", "mass_matrix", "fd_dq"];
 /// M as a tree-sparse matrix.
 const SPARSE: &str = "mass_matrix_sparse";
 /// What a build of an engine has after the engine's name.
@@ -41,7 +44,7 @@ pub fn ranking(run: &RunInfo, rows: &[Row]) -> Ranking {
     let (mut errors, mut times) = (errors(rows), times(rows));
     let ranked = |(name, version): (&str, &str)| {
         let mut own = times.remove(name).unwrap_or_default();
-        for quantity in QUANTITIES.into_iter().filter(|_| name != OWN) {
+        for quantity in TIMED.into_iter().filter(|_| name != OWN) {
             if !own.contains_key(quantity)
                 && let Some(times) = recorded(run, name, quantity)
             {
@@ -145,7 +148,7 @@ fn times(rows: &[Row]) -> BTreeMap<&str, BTreeMap<String, Times>> {
     for row in rows.iter().filter(counts) {
         // Of M, what is timed is the tree-sparse matrix.
         let timed = |quantity: &&str| row.quantity == if *quantity == "mass_matrix" { SPARSE } else { *quantity };
-        let Some(quantity) = QUANTITIES.into_iter().find(timed) else { continue };
+        let Some(quantity) = TIMED.into_iter().find(timed) else { continue };
         let own = row.engine == OWN;
         let ratio = match (own, row.metric.as_str()) {
             (true, "ns_per_call") => Some(1.0),

@@ -9,14 +9,15 @@ use featherbench_results::{Errors, Ranked, Ranking, Row, RunInfo, Times};
 use featherbench_study::figures::{drawing, errors};
 use maud::{Markup, html};
 
-use super::{QUANTITIES, ranking};
+use super::machines::recorded;
+use super::{QUANTITIES, TIMED, ranking};
 
 /// The spacing of doubles at one: errors are multiples of it.
 const EPSILON: f64 = f64::EPSILON;
 /// No value.
-const NONE: &str = "–";
+pub(super) const NONE: &str = "–";
 /// What the quantities are called in narrow columns.
-const NARROW: [&str; 3] = ["FD", "ID", "M"];
+pub(super) const NARROW: [&str; TIMED.len()] = ["FD", "ID", "M", "∂FD"];
 
 /// Makes the section; a run without errors and times of engines has none.
 pub(crate) fn section(run: &RunInfo, rows: &[Row], overview: &Overview) -> Option<Section> {
@@ -24,13 +25,16 @@ pub(crate) fn section(run: &RunInfo, rows: &[Row], overview: &Overview) -> Optio
     if ranking.engines.iter().all(|engine| engine.errors.is_empty() && engine.times.is_empty()) {
         return None;
     }
-    let (drawn, parts) = figure(&ranking);
+    let (drawn, mut parts) = figure(&ranking);
+    let (recorded, of_machines) = recorded(overview, &run.recorded_times);
+    parts.extend(of_machines);
     let lead = Lead { body: html! { (table(run, overview, &ranking)) (drawn) }, lines: lines(run, &ranking) };
     let body = html! {
         section #engines {
             h2 { "Engines" }
             p.lead { (coded(&note(run, &ranking))) }
             div.scroll { (whole(overview, &ranking)) }
+            (recorded)
         }
     };
     Some(Section { lead: Some(lead), parts, style: include_str!("ranking.css"), ..Section::new("engines", "Engines", body) })
@@ -56,7 +60,7 @@ fn units(error: f64) -> String {
 }
 
 /// A ratio of times: two digits, as more do not hold from machine to machine.
-fn ratio(times: &Times) -> String {
+pub(super) fn ratio(times: &Times) -> String {
     format!("{}{}", if times.estimated { "≈\u{202f}" } else { "" }, short(times.median))
 }
 
@@ -69,11 +73,13 @@ fn table(run: &RunInfo, overview: &Overview, ranking: &Ranking) -> Markup {
                 tr {
                     th scope="col" rowspan="2" { "engine" } th scope="col" rowspan="2" { "right" }
                     th scope="colgroup" colspan=(QUANTITIES.len()) { "error, in units of rounding 2⁻⁵²" }
-                    th scope="colgroup" colspan=(QUANTITIES.len()) { "time over ours" }
+                    th scope="colgroup" colspan=(TIMED.len()) { "time over ours" }
                     th scope="col" rowspan="2" { "gravest finding" }
                 }
                 tr {
-                    @for _ in 0..2 { @for (quantity, short) in QUANTITIES.into_iter().zip(NARROW) { th.number scope="col" title=(labels::quantity(quantity)) { (short) } } }
+                    @for (quantity, short) in QUANTITIES.iter().chain(&TIMED).zip(NARROW[..QUANTITIES.len()].iter().chain(&NARROW)) {
+                        th.number scope="col" title=(labels::quantity(quantity)) { (short) }
+                    }
                 }
             }
             tbody { @for of in ranked {
@@ -81,7 +87,7 @@ fn table(run: &RunInfo, overview: &Overview, ranking: &Ranking) -> Markup {
                     th scope="row" { (engine(overview, &of.name)) " " small { (of.version) } }
                     td data-of="right" { b { (if of.asked == 0 { NONE.to_owned() } else { share(of.right, of.asked) }) } @if of.asked > 0 { " " small { "of " (grouped(of.asked)) } } }
                     @for (quantity, short) in QUANTITIES.into_iter().zip(NARROW) { td.number data-of={ (short) ", error" } { (error_cell(of.errors.get(quantity), overview)) } }
-                    @for (quantity, short) in QUANTITIES.into_iter().zip(NARROW) { td.number data-of={ (short) ", time" } { (time_cell(of, quantity)) } }
+                    @for (quantity, short) in TIMED.into_iter().zip(NARROW) { td.number data-of={ (short) ", time" } { (time_cell(of, quantity)) } }
                     td.gravest { (of.gravest) }
                 }
             } }
@@ -121,7 +127,7 @@ fn note(run: &RunInfo, ranking: &Ranking) -> String {
     let mut text = String::new();
     if let Some((robots, states)) = most(|errors| errors.robots).zip(most(|errors| errors.states)) {
         text = format!(
-            "Right: answers within their bound, of all questions that have one. FD: forward dynamics. ID: inverse dynamics. M: mass matrix. \
+            "Right: answers within their bound, of all questions that have one. FD: forward dynamics. ID: inverse dynamics. M: mass matrix. ∂FD: ∂FD/∂q. \
              Errors are against the truth in 32 digits, in units of 2⁻⁵²: the median of up to {} at {}, and the worst robot.",
             count(robots, "robot"),
             count(states, "state")
@@ -156,7 +162,7 @@ fn whole(overview: &Overview, ranking: &Ranking) -> Markup {
             thead { tr { th scope="col" { "engine" } th scope="col" { "compute" } @for head in heads { th scope="col" { (head) } } } }
             tbody {
                 @for of in &ranking.engines {
-                    @for quantity in QUANTITIES {
+                    @for quantity in TIMED {
                         @let (errors, times) = (of.errors.get(quantity), of.times.get(quantity));
                         @if errors.is_some() || times.is_some() {
                             tr {
@@ -215,7 +221,7 @@ fn figure(ranking: &Ranking) -> (Markup, Vec<Part>) {
 
 /// The table of the terminal.
 fn lines(run: &RunInfo, ranking: &Ranking) -> Vec<String> {
-    let heads = ["engine", "right", "FD error", "worst", "on", "time FD", "ID", "M", "gravest finding"].map(str::to_owned);
+    let heads = ["engine", "right", "FD error", "worst", "on", "time FD", "ID", "M", "∂FD", "gravest finding"].map(str::to_owned);
     let line = |of: &Ranked| {
         let errors = of.errors.get("fd");
         let error = |text: fn(&Errors) -> String| errors.map_or_else(|| NONE.to_owned(), text);
@@ -230,11 +236,12 @@ fn lines(run: &RunInfo, ranking: &Ranking) -> Vec<String> {
             time("fd"),
             time("id"),
             time("mass_matrix"),
+            time("fd_dq"),
             of.gravest.clone(),
         ]
     };
     let table: Vec<_> = std::iter::once(heads).chain(ranking.engines.iter().map(line)).collect();
-    let mut lines: Vec<String> = aligned(&table, &[0, 1, 4, 8]).into_iter().map(|line| format!("  {line}")).collect();
+    let mut lines: Vec<String> = aligned(&table, &[0, 1, 4, 9]).into_iter().map(|line| format!("  {line}")).collect();
     lines.push(format!("  {}", note(run, ranking)));
     lines
 }

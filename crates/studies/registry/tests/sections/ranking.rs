@@ -93,6 +93,15 @@ fn recorded_times_fill_what_was_not_measured() {
     let drake = &of(&ranking, "drake").times["fd"];
     assert_eq!((drake.robots, drake.median, drake.least, drake.most, drake.machines), (30, 3.0, 1.0, 8.0, 2));
     assert_eq!(of(&ranking, "mujoco").times["fd"].machines, 0, "what this run measured stays");
+    // A machine can be chosen: the first is open, the others are brought. What one has from others is not its own.
+    let sections = sections(&run, &rows());
+    let section = sections.iter().find(|section| section.lead.is_some()).unwrap();
+    let parts: String = section.parts.iter().map(|part| part.body.0.as_str()).collect();
+    for (machine, median) in [("a", "<b>2</b> <small>1 to 4, 30 robots"), ("b", "<b>4</b> <small>2 to 8, 30 robots")] {
+        assert!(section.body.0.contains(&format!("<option value=\"{machine}, \"")), "{}", section.body.0);
+        assert_eq!([section.body.0.contains(median), parts.contains(median)], [machine == "a", machine == "b"], "{machine}");
+    }
+    assert!(!section.body.0.contains("200") && !parts.contains("50 to 200"));
 }
 
 #[test]

@@ -57,13 +57,13 @@ pub struct Settings {
     /// oracles, and oracles whose clock estimates.
     #[serde(default)]
     pub engines: Vec<String>,
-    /// The quantities that are timed, if not all of our kernels.
+    /// The quantities that are timed. Without any it is all of our kernels.
     #[serde(default, deserialize_with = "quantities")]
     pub quantities: Vec<Quantity>,
     /// Those of the engines whose fastest method is compared with each of ours: rows `best_other`.
     #[serde(default)]
     pub best_of: Vec<String>,
-    /// Whether derivatives are timed, and nothing else. Otherwise everything else is.
+    /// Without `quantities`: whether derivatives are timed, and nothing else. Otherwise everything else is.
     #[serde(default)]
     pub derivatives: bool,
 }
@@ -285,8 +285,10 @@ impl Timing {
         let Some(featherbench) = context.engine(REFERENCE) else { return Vec::new() };
         let mut experiments: Vec<(Quantity, Vec<Candidate>)> = Vec::new();
         let Settings { quantities, derivatives, .. } = &self.settings;
-        let named = |quantity: &Quantity| quantities.is_empty() || quantities.contains(&quantity.in_double());
-        let asked = |(quantity, _): &(Quantity, &str)| quantity.is_derivative() == *derivatives && named(quantity);
+        let asked = |(quantity, _): &(Quantity, &str)| match &quantities[..] {
+            [] => quantity.is_derivative() == *derivatives,
+            named => named.contains(&quantity.in_double()),
+        };
         for (quantity, method) in (self.kernels)(robot).into_iter().filter(asked) {
             let one = |control| candidate(featherbench, quantity, method, control);
             match experiments.iter_mut().find(|(known, _)| *known == quantity.in_double()) {

@@ -1,7 +1,8 @@
 //! The part of an experiment that one process makes: candidates in alternating blocks.
 //!
 //! Rounds are grouped into *epochs*. At the start of an epoch all candidates relocate their data, in random order, each in its own process.
-//! The place of data in memory changes a time by up to some percent, and a ratio from one layout would depend on chance.
+//! The place of data in memory changes a time by up to some percent, and a ratio from one layout would depend on chance. The stack moves, too:
+//! each of its places in a cache line has as many epochs as the others.
 //! In each round every candidate has one block, in random order, from a random state on. The batch begins again at its end. Before a block
 //! its candidate makes a tenth as many calls that are not timed, at the states before. Other candidates ran since its last block, and their
 //! data are in the caches.
@@ -11,13 +12,13 @@
 
 use super::samples::Samples;
 use featherbench_bench::statistics::EPOCHS;
-use featherbench_bench::{Evaluation, NoAnswer, Relocation};
+use featherbench_bench::{Evaluation, NoAnswer, Relocation, STACK_PLACES, on_stack_at};
 use featherbench_robots::Random;
 use std::time::Duration;
 
 /// The shortest block. It is some thousand times the clock's resolution and the cost of reading it. It is so short that most blocks are not
 /// interrupted: the system's timer ticks every 4 ms.
-const BLOCK: Duration = Duration::from_micros(200);
+const BLOCK: Duration = Duration::from_micros(150);
 /// Most rounds of an epoch: with more time the blocks become longer.
 const MOST_ROUNDS: usize = 5;
 /// Calls before a block that are not timed: one per this number of calls of the block.
@@ -26,6 +27,9 @@ const WARM: usize = 10;
 const MOST_CALLS: usize = 1 << 24;
 /// A block is long enough if it was so in each of these trials. One alone may include a stall, and then all blocks would be too short.
 const TRIALS: usize = 3;
+
+/// Cache lines of a page: the stack begins in any of them.
+const LINES: usize = 64;
 
 /// A candidate that is ready to run, or why it is not.
 pub(crate) type Ready<'a> = Result<Box<dyn Evaluation + 'a>, NoAnswer>;
@@ -86,7 +90,9 @@ pub(crate) fn experiment<'a>(
     let rounds = budget.rounds_of(round_time, count);
     let mut samples = Samples::new(calls, EPOCHS * rounds);
     let mut order: Vec<usize> = (0..count).collect();
-    for epoch in 0..EPOCHS {
+    let mut places: Vec<usize> = (0..EPOCHS).collect();
+    shuffle(&mut places, random);
+    for (epoch, place) in places.into_iter().enumerate() {
         shuffle(&mut order, random);
         for &which in order.iter().filter(|_| epoch > 0) {
             if budget.affords(moves[which]) {
@@ -95,16 +101,19 @@ pub(crate) fn experiment<'a>(
                 moves[which] = moves[which].min(clock().saturating_sub(start));
             }
         }
-        for round in epoch * rounds..(epoch + 1) * rounds {
-            shuffle(&mut order, random);
-            for &which in &order {
-                let (calls, state) = (samples.calls[which], random.below(states));
-                match block(&mut candidates[which], state, calls) {
-                    Ok(time) => samples.set(which, round, time.as_secs_f64() * 1e9 / calls as f64),
-                    Err(no_answer) => candidates[which] = Err(no_answer),
+        let step = random.below(LINES) * STACK_PLACES + place;
+        on_stack_at(step, &mut || {
+            for round in epoch * rounds..(epoch + 1) * rounds {
+                shuffle(&mut order, random);
+                for &which in &order {
+                    let (calls, state) = (samples.calls[which], random.below(states));
+                    match block(&mut candidates[which], state, calls) {
+                        Ok(time) => samples.set(which, round, time.as_secs_f64() * 1e9 / calls as f64),
+                        Err(no_answer) => candidates[which] = Err(no_answer),
+                    }
                 }
             }
-        }
+        });
     }
     samples
 }
@@ -406,10 +415,10 @@ mod tests {
     #[test]
     fn seconds_become_rounds_and_then_longer_blocks() {
         assert_eq!(Budget::of(0.0), Budget { rounds: 1, block: BLOCK });
-        assert_eq!(Budget::of(0.002), Budget { rounds: 1, block: Duration::from_secs_f64(0.002 / 6.0) });
-        assert_eq!(Budget::of(0.03), Budget { rounds: MOST_ROUNDS, block: Duration::from_millis(1) });
-        let rounds = |millis, count| Budget::of(0.03).rounds_of(Duration::from_millis(millis), count);
+        assert_eq!(Budget::of(0.002), Budget { rounds: 1, block: Duration::from_secs_f64(0.002 / 8.0) });
+        assert_eq!(Budget::of(0.04), Budget { rounds: MOST_ROUNDS, block: Duration::from_millis(1) });
+        let rounds = |millis, count| Budget::of(0.04).rounds_of(Duration::from_millis(millis), count);
         assert_eq!([rounds(4, 4), rounds(8, 4), rounds(16, 4), rounds(1000, 4)], [5, 5, 2, 1]);
-        assert!(Budget::of(0.03).affords(Duration::from_millis(20)) && !Budget::of(0.03).affords(Duration::from_millis(21)));
+        assert!(Budget::of(0.04).affords(Duration::from_millis(20)) && !Budget::of(0.04).affords(Duration::from_millis(21)));
     }
 }
