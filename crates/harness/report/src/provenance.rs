@@ -160,8 +160,8 @@ fn robots(run: &RunInfo, overview: &Overview) -> Markup {
                             td.number { (size(robot.nv)) }
                             td.number { (size(robot.bodies)) }
                             td.number { (size(robot.depth)) }
-                            td { @if let Some(info) = info { (info.licence) } }
-                            td { @if let Some(info) = info { (info.source) } }
+                            td.source { @if let Some(info) = info { (info.licence) } }
+                            td.source { @if let Some(info) = info { (info.source) } }
                             td { @if let Some(info) = info { code title=(info.hash) { (info.hash.chars().take(12).collect::<String>()) } } }
                         }
                     }

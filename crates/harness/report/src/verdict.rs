@@ -57,7 +57,7 @@ fn body(
             (extent(findings))
             @if findings.status == Status::Failed { (lead()) }
             @for answer in sections.iter().filter_map(|section| section.answer.as_ref()) { (answer) }
-            div.columns {
+            div.columns.broad {
                 div {
                     @for finding in added { (finding.body) }
                     (closest(overview, rows))

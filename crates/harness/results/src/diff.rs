@@ -216,7 +216,7 @@ fn level(mut p_values: Vec<f64>) -> f64 {
     p_values.sort_unstable_by(f64::total_cmp);
     let count = p_values.len() as f64;
     let within = |(k, p): &(usize, f64)| *p <= FALSE_SHARE * (k + 1) as f64 / count;
-    p_values.into_iter().enumerate().filter(within).map(|(_, p)| p).last().unwrap_or(-1.0)
+    p_values.into_iter().enumerate().rev().find(within).map(|(_, p)| p).unwrap_or(-1.0)
 }
 
 /// Whether two times differ by more than a common factor: their ratio over it is beyond the noise, and chance is not a likely cause; or one of

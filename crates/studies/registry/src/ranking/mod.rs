@@ -34,9 +34,11 @@ const BUILDS: [&str; 3] = ["-clang", "-gcc", "-native"];
 pub fn ranking(run: &RunInfo, rows: &[Row]) -> Ranking {
     let findings = Findings::of(run, rows);
     let mut versions: BTreeMap<&str, &str> = BTreeMap::new();
-    for (name, version) in
-        run.engines.iter().map(|engine| (&engine.name, &engine.version)).chain(rows.iter().map(|row| (&row.engine, &row.engine_version)))
-    {
+    let of_run = run.engines.iter().map(|engine| (&engine.name, &engine.version));
+    let of_rows = rows.iter().map(|row| (&row.engine, &row.engine_version));
+    // Engines of which there are times alone have a line, too.
+    let of_machines = run.recorded_times.iter().flat_map(|machine| &machine.engines).map(|engine| (&engine.name, &engine.version));
+    for (name, version) in of_run.chain(of_rows).chain(of_machines) {
         if !name.is_empty() && name != EVERYONE {
             versions.entry(engine_of(name)).or_insert(version);
         }

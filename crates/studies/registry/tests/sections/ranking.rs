@@ -84,7 +84,7 @@ fn recorded_times_fill_what_was_not_measured() {
             let times = Times { robots: 30, median, least: median / 2.0, most: 2.0 * median, estimated: false, machines };
             Ranked { name: engine.into(), times: BTreeMap::from([("fd".to_owned(), times)]), ..Ranked::default() }
         };
-        Ranking { machine: name.into(), engines: vec![times("drake"), times("mujoco")], ..Ranking::default() }
+        Ranking { machine: name.into(), engines: vec![times("drake"), times("mujoco"), times("dynibo")], ..Ranking::default() }
     };
     // What the third has is from others.
     let recorded_times = vec![machine("a", 2.0, 0), machine("b", 4.0, 0), machine("c", 100.0, 2)];
@@ -93,6 +93,7 @@ fn recorded_times_fill_what_was_not_measured() {
     let drake = &of(&ranking, "drake").times["fd"];
     assert_eq!((drake.robots, drake.median, drake.least, drake.most, drake.machines), (30, 3.0, 1.0, 8.0, 2));
     assert_eq!(of(&ranking, "mujoco").times["fd"].machines, 0, "what this run measured stays");
+    assert_eq!((of(&ranking, "dynibo").asked, of(&ranking, "dynibo").times["fd"].median), (0, 3.0), "one that has times alone");
     // A machine can be chosen: the first is open, the others are brought. What one has from others is not its own.
     let sections = sections(&run, &rows());
     let section = sections.iter().find(|section| section.lead.is_some()).unwrap();
