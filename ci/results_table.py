@@ -132,7 +132,8 @@ def lines(ranking: Ranking) -> Iterator[str]:
     timed, machines = (max((times[key] for times in of_times), default=0) for key in ("robots", "machines"))
     errors_are = (
         f"The suite is {ranking['suite']}, the day {ranking['started'][:10]}. *Right* is the share of answers within their bound. "
-        "FD is forward dynamics, ∂FD its derivative by q, ID inverse dynamics, M the mass matrix. *Errors* are those of the engine's usual method against the "
+        "FD is forward dynamics, ∂FD its derivative by q, ID inverse dynamics, M the mass matrix. "
+        "*Errors* are those of the engine's usual method against the "
         f"truth in 32 digits, in units of 2⁻⁵². Each is the median over up to {robots} robots at {states} states. "
         "The worst is that of the robot with the largest error."
     )

@@ -52,7 +52,8 @@ OVER = (
     SEEN
     + NAMED
     + """
-    const groups = [...document.querySelectorAll('svg')].map(svg => [...svg.querySelectorAll('text')].filter(text => text.textContent.trim()));
+    const texts = svg => [...svg.querySelectorAll('text')].filter(text => text.textContent.trim());
+    const groups = [...document.querySelectorAll('svg')].map(texts);
     groups.push([...document.querySelectorAll('nav a, header button, header a, #menu')]);
     groups.push([...document.querySelectorAll('.controls select, .controls button, .controls input')]);
     const found = [];

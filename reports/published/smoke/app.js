@@ -92,6 +92,9 @@ const featherbench = (() => {
   }));
 })();
 
+// On a narrow screen the navigation is a menu, which closes when a section is chosen.
+document.addEventListener("click", (event) => event.target.closest("nav a")?.closest(":popover-open")?.hidePopover());
+
 // The command's copy button. Under file:// a browser may refuse its clipboard; then the command is selected, ready to be copied.
 document.addEventListener("click", async (event) => {
   const button = event.target.closest("#copy");
@@ -654,7 +657,10 @@ featherbench.dressed((root) => {
     const copied = make("button", { type: "button", className: "chart-copy" }, "Copy data");
     const tip = make("div", { className: "chart-tip", role: "status", hidden: true });
     const over = element("g", { class: "over", "pointer-events": "none" });
-    drawing.append(tip, make("p", { className: "chart-tools" }, back, kept, copied));
+    const link = make("a", { className: "chart-link", href: address(drawing) }, "Link");
+    link.addEventListener("pointerdown", () => { link.href = address(drawing); });
+    link.addEventListener("focus", () => { link.href = address(drawing); });
+    drawing.append(tip, make("p", { className: "chart-tools" }, back, kept, copied, link));
     svg.append(over);
     svg.setAttribute("role", "group");
     svg.setAttribute("tabindex", "0");
@@ -880,6 +886,35 @@ featherbench.dressed((root) => {
     for (const place of root.querySelectorAll("[data-choice]:not([hidden]) > [data-part]")) bring(place);
   }
 
+  // The address of a drawing: its lists, and what is chosen in them.
+  function address(drawing) {
+    const chosen = drawing.closest("[data-lists]");
+    if (!chosen) return `#${drawing.closest("[id]")?.id ?? ""}`;
+    const values = chosen.dataset.lists.split(" ").map((id) => byId(id)?.value ?? "");
+    return `#figure=${encodeURIComponent(JSON.stringify([chosen.id, ...values]))}`;
+  }
+
+  // The drawing that the page's address names, until it is there.
+  let asked = null;
+
+  function read() {
+    if (!location.hash.startsWith("#figure=")) return;
+    try { asked = JSON.parse(decodeURIComponent(location.hash.slice(8))); } catch { asked = null; }
+    if (Array.isArray(asked) && byId(asked[0])) seek(byId(asked[0]));
+  }
+
+  function seek(chosen) {
+    const [id, ...values] = Array.isArray(asked) ? asked : [];
+    if (!chosen || id !== chosen.id || !chosen.dataset.lists) return;
+    asked = null;
+    chosen.dataset.lists.split(" ").forEach((list, k) => { if (byId(list) && values[k] !== undefined) byId(list).value = values[k]; });
+    choose(chosen);
+    chosen.scrollIntoView();
+  }
+
+  addEventListener("hashchange", read);
+  read();
+
   // A finding leads to the drawing that shows it. Its choice is made when the list is there.
   const wanted = new Map();
 
@@ -903,6 +938,7 @@ featherbench.dressed((root) => {
       for (const id of chosen.dataset.lists.split(" ")) byId(id).addEventListener("change", () => choose(chosen));
       choose(chosen);
       for (const id of chosen.dataset.lists.split(" ")) take(byId(id));
+      seek(chosen);
     }
     const around = root.parentElement?.closest("[data-lists]");
     if (around) choose(around);

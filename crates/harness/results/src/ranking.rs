@@ -1,13 +1,12 @@
 //! What a run says of each engine: who is right, by how much, and how fast.
 
+use crate::ResultsError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// The engines of a run, from the smallest error of forward dynamics. Those without one come last.
-///
-/// It is in `run.json` of later runs, too: as the times that other machines had.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Ranking {
     /// The suite.
     pub suite: String,
@@ -20,8 +19,7 @@ pub struct Ranking {
 }
 
 /// What a run says of an engine.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Ranked {
     /// Its name.
     pub name: String,
@@ -43,8 +41,7 @@ pub struct Ranked {
 
 /// Errors of one method over robots, free of units. The error of a robot is the median over its states: where an answer is the small difference
 /// of large numbers, one state says nothing of the method.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Errors {
     /// The method.
     pub method: String,
@@ -63,8 +60,7 @@ pub struct Errors {
 }
 
 /// Times of an engine over ours, over robots.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Times {
     /// The number of robots.
     pub robots: usize,
@@ -78,4 +74,40 @@ pub struct Times {
     pub estimated: bool,
     /// Other machines that recorded them; none if this run measured them.
     pub machines: usize,
+}
+
+/// Times of an engine over ours that another machine measured: a line of `datasets/speed/MACHINE/times.json`, and of `run.json` of later runs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Recorded {
+    /// Model name of the processor.
+    pub machine: String,
+    /// When the run started that measured them.
+    pub started: String,
+    /// The engine's name.
+    pub engine: String,
+    /// Its version.
+    pub version: String,
+    /// What is computed.
+    pub quantity: String,
+    /// The number of robots.
+    pub robots: usize,
+    /// The median over the robots.
+    pub median: f64,
+    /// The least.
+    pub least: f64,
+    /// The most.
+    pub most: f64,
+    /// Whether one of them is an estimate.
+    pub estimated: bool,
+}
+
+impl Recorded {
+    /// The lines of a file.
+    ///
+    /// # Errors
+    /// When the text is not such a file.
+    pub fn parse(path: &Path, text: &str) -> Result<Vec<Self>, ResultsError> {
+        serde_json::from_str(text).map_err(|source| ResultsError::Json { path: path.to_owned(), source })
+    }
 }

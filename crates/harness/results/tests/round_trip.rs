@@ -6,8 +6,8 @@ use std::path::Path;
 
 use featherbench_results::{
     Base, COLUMNS, CSV_NAME, Checksums, ColumnType, Convention, Culprit, DRAWINGS_NAME, Drawing, DrawnBody, EngineInfo, EngineSource,
-    Errors, Expectation, Feature, GateKind, GitInfo, Host, Kind, ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, Ranked, Ranking, Relation,
-    ResultsError, RobotInfo, Row, RunInfo, SCHEMA_NAME, ShardInfo, Times, Verdict, atomic_write, canonical_json, read_csv, read_run,
+    Expectation, Feature, GateKind, GitInfo, Host, Kind, ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, Recorded, Relation,
+    ResultsError, RobotInfo, Row, RunInfo, SCHEMA_NAME, ShardInfo, Verdict, atomic_write, canonical_json, read_csv, read_run,
     schema_json, to_csv, write_csv, write_run,
 };
 use proptest::prelude::*;
@@ -289,26 +289,17 @@ fn run_info() -> RunInfo {
         expected: vec![
             Expectation::new(GateKind::Counts, "id".into(), 2, 1).because("one is missing".into()).about(Culprit::engine("drake")),
         ],
-        recorded_times: vec![Ranking {
-            suite: "timing".into(),
-            started: "2026-01-01T00:00:00Z".into(),
+        recorded_times: vec![Recorded {
             machine: "another".into(),
-            engines: vec![Ranked {
-                name: "drake".into(),
-                asked: 3,
-                right: 2,
-                known: 1,
-                errors: BTreeMap::from([(
-                    "fd".into(),
-                    Errors { robots: 2, median: 1e-16, worst: 0.1, of_bound: Some(3.0), ..Errors::default() },
-                )]),
-                times: BTreeMap::from([(
-                    "id".into(),
-                    Times { robots: 3, median: 2.5, least: 1.5, most: 3.5, estimated: true, machines: 0 },
-                )]),
-                gravest: "physics differs".into(),
-                ..Ranked::default()
-            }],
+            started: "2026-01-01T00:00:00Z".into(),
+            engine: "drake".into(),
+            version: "1.2".into(),
+            quantity: "id".into(),
+            robots: 3,
+            median: 2.5,
+            least: 1.5,
+            most: 3.5,
+            estimated: true,
         }],
         shards: vec![ShardInfo {
             shard: "2/7".into(),

@@ -37,7 +37,7 @@ pub fn ranking(run: &RunInfo, rows: &[Row]) -> Ranking {
     let of_run = run.engines.iter().map(|engine| (&engine.name, &engine.version));
     let of_rows = rows.iter().map(|row| (&row.engine, &row.engine_version));
     // Engines of which there are times alone have a line, too.
-    let of_machines = run.recorded_times.iter().flat_map(|machine| &machine.engines).map(|engine| (&engine.name, &engine.version));
+    let of_machines = run.recorded_times.iter().map(|times| (&times.engine, &times.version));
     for (name, version) in of_run.chain(of_rows).chain(of_machines) {
         if !name.is_empty() && name != EVERYONE {
             versions.entry(engine_of(name)).or_insert(version);
@@ -182,19 +182,14 @@ fn times(rows: &[Row]) -> BTreeMap<&str, BTreeMap<String, Times>> {
 
 /// The times that other machines recorded: over the machines the median, and over all their robots the least and the most.
 fn recorded(run: &RunInfo, engine: &str, quantity: &str) -> Option<Times> {
-    let of_machine = |ranking: &Ranking| -> Option<Times> {
-        let same = ranking.engines.iter().find(|other| other.name == engine)?;
-        // What a machine has from others counts there.
-        same.times.get(quantity).filter(|times| times.machines == 0).cloned()
-    };
-    let all: Vec<Times> = run.recorded_times.iter().filter_map(of_machine).collect();
-    let medians: Vec<f64> = all.iter().map(|times| times.median).collect();
+    let all = || run.recorded_times.iter().filter(|times| times.engine == engine && times.quantity == quantity);
+    let medians: Vec<f64> = all().map(|times| times.median).collect();
     Some(Times {
-        robots: all.iter().map(|times| times.robots).max()?,
+        robots: all().map(|times| times.robots).max()?,
         median: quantile_of(&medians, 0.5),
-        least: all.iter().map(|times| times.least).reduce(smaller)?,
-        most: all.iter().map(|times| times.most).reduce(larger)?,
-        estimated: all.iter().any(|times| times.estimated),
-        machines: all.len(),
+        least: all().map(|times| times.least).reduce(smaller)?,
+        most: all().map(|times| times.most).reduce(larger)?,
+        estimated: all().any(|times| times.estimated),
+        machines: medians.len(),
     })
 }

@@ -60,8 +60,12 @@ fn units(error: f64) -> String {
 }
 
 /// A ratio of times: two digits, as more do not hold from machine to machine.
-pub(super) fn ratio(times: &Times) -> String {
-    format!("{}{}", if times.estimated { "≈\u{202f}" } else { "" }, short(times.median))
+pub(super) fn ratio(median: f64, estimated: bool) -> String {
+    format!("{}{}", if estimated { "≈\u{202f}" } else { "" }, short(median))
+}
+
+fn ratio_of(times: &Times) -> String {
+    ratio(times.median, times.estimated)
 }
 
 /// The table of the first page: a line for each engine.
@@ -114,7 +118,7 @@ fn time_cell(of: &Ranked, quantity: &str) -> Markup {
             _ if of.name == OWN => b { "1" },
             None => span.none { (NONE) },
             Some(times) => {
-                b { (ratio(times)) }
+                b { (ratio_of(times)) }
                 small { (short(times.least)) " to " (short(times.most)) }
             }
         }
@@ -174,7 +178,7 @@ fn whole(overview: &Overview, ranking: &Ranking) -> Markup {
                                     td.number { @match errors.of_bound { Some(times) => (short(times)), None => (NONE) } }
                                 } @else { td colspan="7" { "no error in this run" } }
                                 @if let Some(times) = times {
-                                    td.number { (ratio(times)) @if times.machines > 0 { " (recorded)" } } td.number { (times.robots) }
+                                    td.number { (ratio_of(times)) @if times.machines > 0 { " (recorded)" } } td.number { (times.robots) }
                                 } @else { td.number { (NONE) } td.number { "0" } }
                             }
                         }
@@ -194,7 +198,7 @@ fn figure(ranking: &Ranking) -> (Markup, Vec<Part>) {
             let (errors, times) = of.errors.get(quantity).zip(of.times.get(quantity))?;
             let about = vec![
                 format!("error {} units, worst {} on {}", units(errors.median), units(errors.worst), errors.worst_robot),
-                format!("time over ours {}, {} to {}", ratio(times), short(times.least), short(times.most)),
+                format!("time over ours {}, {} to {}", ratio_of(times), short(times.least), short(times.most)),
             ];
             let point = Point {
                 upwards: [None, Some(errors.worst)],
@@ -226,7 +230,7 @@ fn lines(run: &RunInfo, ranking: &Ranking) -> Vec<String> {
         let errors = of.errors.get("fd");
         let error = |text: fn(&Errors) -> String| errors.map_or_else(|| NONE.to_owned(), text);
         let time =
-            |quantity: &str| if of.name == OWN { "1".to_owned() } else { of.times.get(quantity).map_or_else(|| NONE.to_owned(), ratio) };
+            |quantity: &str| if of.name == OWN { "1".to_owned() } else { of.times.get(quantity).map_or_else(|| NONE.to_owned(), ratio_of) };
         [
             format!("{} {}", of.name, of.version).trim_end().to_owned(),
             right(of),
