@@ -43,7 +43,7 @@ CUT = (
     SEEN
     + NAMED
     + """
-    const boxes = [...document.querySelectorAll('.scroll, .drawing, nav, header')].filter(seen);
+    const boxes = [...document.querySelectorAll('.scroll, .paper, nav, header')].filter(seen);
     const cut = boxes.filter(box => box.scrollWidth > box.clientWidth + 1);
     return cut.map(box => `${box.scrollWidth} in ${box.clientWidth} px, ${name(box.querySelector('th, text, a') ?? box)}`).slice(0, 8);"""
 )

@@ -31,7 +31,8 @@ LONELY = (
     DRAWING
     + """
     const svg = box.querySelector('svg');
-    svg.scrollIntoView({block: 'center', behavior: 'instant'});
+    // A drawing with many names may be higher than the window.
+    svg.querySelector('.box').scrollIntoView({block: 'center', behavior: 'instant'});
     const middle = box => [box.x + box.width / 2, box.y + box.height / 2];
     const marks = [...svg.querySelectorAll('.series .mark')].filter(mark => mark.getBoundingClientRect().width > 0);
     const places = marks.map(mark => middle(mark.getBoundingClientRect()));

@@ -204,7 +204,7 @@ fn number(value: f64) -> String {
     if (digits - digits.round()).abs() < 1e-6 && digits > 0.0 {
         power(digits.round() as i32, decade as i32)
     } else {
-        crate::numbers::short(value)
+        format!("{}·{}", crate::numbers::short(digits), power(1, decade as i32))
     }
 }
 
@@ -239,7 +239,7 @@ mod tests {
         assert_eq!(labels(Axis::log("x"), &[1e-16, 1e-4]), ["10⁻¹⁶", "10⁻¹⁴", "10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴"]);
         assert_eq!(labels(Axis::log("x"), &[1.0, 6.0]), ["1", "2", "5"]);
         assert_eq!(labels(Axis::log("x"), &[1.0, 2.9]), ["1", "1.5", "2", "2.5", "3"]);
-        assert_eq!(labels(Axis::log("x"), &[1e-15, 2.4e-15]), ["10⁻¹⁵", "1.5e-15", "2·10⁻¹⁵"]);
+        assert_eq!(labels(Axis::log("x"), &[1e-15, 2.4e-15]), ["10⁻¹⁵", "1.5·10⁻¹⁵", "2·10⁻¹⁵"]);
         assert_eq!(labels(Axis::linear("x"), &[0.0, 1.0]), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(labels(Axis::log("x").at(vec![1e6, 10.0, 10.0, 250.0]), &[10.0, 1e6]), ["10", "250", "10⁶"]);
         assert_eq!(labels(Axis::named("x", vec!["a".into(), "b".into()]), &[]), ["a", "b"]);

@@ -84,7 +84,7 @@ fn drawn(overview: &Overview, accuracy: &Accuracy, curves: &[&Curve], quantity: 
             }
         }
         let engine = overview.engines[answer.engine];
-        let name = joined(&[engine, answer.method, if answer.scalar == "f64" { "" } else { answer.scalar }]);
+        let name = joined(&[engine, labels::method(answer.method), if answer.scalar == "f64" { "" } else { answer.scalar }]);
         let broad = curve.fit.zip(curve.span).map(|(fit, span)| span.map(|x| featherbench_study::figures::fitted(fit, x)).into());
         series.push(Series {
             dash: index,

@@ -150,7 +150,7 @@ fn series(overview: &Overview, plot: &ErrorPlot) -> Vec<Series> {
                 None => envelope.push([point.x, point.y]),
             }
         }
-        let name = joined(&[engine, trace.method, if trace.scalar == "f64" { "" } else { trace.scalar }]);
+        let name = joined(&[engine, labels::method(trace.method), if trace.scalar == "f64" { "" } else { trace.scalar }]);
         series.push(Series { dash: index, path: Some(envelope), ..Series::new(name, overview.styles[trace.engine].method(index), points) });
     }
     if !gates.is_empty() {

@@ -5,7 +5,7 @@ use super::lines::Line;
 use featherbench_report::choices::{Choices, List};
 use featherbench_report::figure::{Axis, Point, Rows, Series, Style};
 use featherbench_report::numbers::{larger, smaller};
-use featherbench_report::{Overview, Part, robot_chunk};
+use featherbench_report::{Overview, Part, labels, robot_chunk};
 use featherbench_study::figures::{drawing, errors, joined, point, told};
 use maud::{Markup, html};
 
@@ -54,7 +54,7 @@ fn drawn(overview: &Overview, lines: &[Line], robot: usize, prefix: &str, name: 
         });
         let method = methods.iter().position(|known| *known == (line.engine, line.method)).unwrap_or(0);
         let quantity = quantities.iter().position(|known| *known == line.quantity).unwrap_or(0) % 2;
-        let label = joined(&[overview.engines[line.engine], line.method, line.title]);
+        let label = joined(&[overview.engines[line.engine], labels::method(line.method), line.title]);
         Series { dash: quantity, ..Series::new(label, Style::nth(quantity).coloured(method), points.collect()) }
     };
     let series: Vec<Series> = lines.iter().filter(|line| line.robot == robot && line.quantity.starts_with(prefix)).map(of).collect();

@@ -3,7 +3,7 @@
 use super::{STUDY, StepLine};
 use featherbench_report::choices::{Choices, List};
 use featherbench_report::figure::{Axis, Point, Rows, Series, Style};
-use featherbench_report::{Overview, Part, robot_chunk};
+use featherbench_report::{Overview, Part, labels, robot_chunk};
 use featherbench_study::figures::{drawing, errors, joined, point, told, with_exponent};
 use maud::{Markup, html};
 
@@ -43,7 +43,7 @@ fn drawn(overview: &Overview, lines: &[StepLine], robot: usize, energy: bool, na
             ..point(&format!("dt = {} s", told(dt)), dt, error, [format!("error {}", told(error))])
         });
         let case = place(&cases, line.case);
-        let label = with_exponent(joined(&[overview.engines[line.engine], line.method, line.case]), line.order, 3);
+        let label = with_exponent(joined(&[overview.engines[line.engine], labels::method(line.method), line.case]), line.order, 3);
         let style = Style::nth(case).coloured(place(&methods, line.method));
         Series { dash: case, ..Series::new(label, style, points.collect()) }
     };

@@ -83,7 +83,7 @@ fn times(overview: &Overview, series: &[&Series]) -> Vec<figure::Series> {
                 ..point(overview.robots[at.robot].name, at.size as f64, seconds, [format!("{} s", told(seconds)), counts.to_owned()])
             })
         });
-        let name = joined(&[overview.engines[one.engine], one.method]);
+        let name = joined(&[overview.engines[one.engine], labels::method(one.method)]);
         let exponent = one.exponent.map(|[exponent, ..]| exponent);
         figure::Series { dash, ..figure::Series::new(with_exponent(name, exponent, 2), style, points.collect()) }
     };
@@ -100,7 +100,7 @@ fn values(overview: &Overview, series: &[&Series], words: &str, value: fn(&Point
                 ..point(overview.robots[at.robot].name, at.size as f64, value, words)
             })
         });
-        let name = joined(&[overview.engines[one.engine], one.method]);
+        let name = joined(&[overview.engines[one.engine], labels::method(one.method)]);
         figure::Series { dash, ..figure::Series::new(name, style, points.collect()) }
     };
     styled(overview, series).into_iter().map(of).collect()

@@ -231,7 +231,7 @@ fn against_error(overview: &Overview, robot: usize, points: &[&Tradeoff]) -> Mar
     let name = overview.robots[robot].name;
     let of = |at: &&Tradeoff| {
         let engine = overview.engines[at.engine];
-        let label = joined(&[engine, at.method, if at.scalar == "f64" { "" } else { at.scalar }]);
+        let label = joined(&[engine, labels::method(at.method), if at.scalar == "f64" { "" } else { at.scalar }]);
         let about = [
             format!("{} ns per call", told(at.ns)),
             format!("median error {}", told(at.error)),
