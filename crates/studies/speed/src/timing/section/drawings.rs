@@ -113,7 +113,7 @@ fn time(overview: &Overview, line: &TimeLine, at: &TimePoint) -> Point {
     ];
     let filters = [("study", STUDY), ("engine", overview.engines[line.engine]), ("quantity", line.algorithm), ("cache", line.cache)];
     Point {
-        // The interval of the median where the run has it, its deciles otherwise.
+        // The interval where the run has it, its deciles otherwise.
         upwards: [at.low.or(at.p10), at.high.or(at.p90)],
         hollow: !at.valid,
         estimated: at.estimated,

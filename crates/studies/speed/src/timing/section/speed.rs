@@ -2,7 +2,7 @@
 
 use featherbench_bench::BATCH;
 use featherbench_bench::statistics::VOID;
-use featherbench_report::numbers::{count, short};
+use featherbench_report::numbers::{capitalised, count, short};
 use featherbench_report::{Overview, Part, labels};
 use featherbench_results::RunInfo;
 use maud::{Markup, html};
@@ -43,7 +43,7 @@ pub fn markup(run: &RunInfo, overview: &Overview, speed: &Speed, best: &[Best]) 
         section #speed {
             h2 { "Speed, side by side" }
             p.lead {
-                "The time of each candidate over that of our usual method, for the same answer: the median over the rounds of a paired experiment, in which all stand in "
+                "The time of each candidate over that of our usual method, for the same answer: lower deciles of a paired experiment, in which all stand in "
                 "alternating blocks on one core. Bars are 95 % intervals, by the scatter over processes. Above 1 ours is faster, below 1 the other."
             }
             (missing(run))
@@ -98,7 +98,7 @@ fn batches(speed: &Speed) -> Markup {
     html! {
         @if speed.ratios.iter().any(Ratio::is_batch) {
             p.note #speed-batch {
-                b { (BATCH) } ": our kernels with one state in each lane of a register, on the same core. A time is that of many states over their number, with the copies into lanes and out of them. "
+                b { (capitalised(labels::method(BATCH))) } ": our kernels with one state in each lane of a register, on the same core. A time is that of many states over their number, with the copies into lanes and out of them. "
                 "It is the throughput where many states are known at once, as in sampling and learning. One state alone takes as long as a whole register."
             }
         }

@@ -50,7 +50,7 @@ pub struct TimePoint {
     pub p10: Option<f64>,
     /// Its last decile.
     pub p90: Option<f64>,
-    /// Lower end of the interval of the median, if the run has it.
+    /// Lower end of the interval, if the run has it.
     pub low: Option<f64>,
     /// Its upper end.
     pub high: Option<f64>,
@@ -97,7 +97,7 @@ pub fn markup(run: &RunInfo, overview: &Overview, times: &[TimeLine], first: Opt
             h2 { "Time against size" }
             @if let Some(first) = first { (first) }
             @if let Some(busy) = run.busy() { p.warning { (busy) } }
-            p.lead { "Time of one call on one pinned core, against the degrees of freedom. Bars are 95 % intervals of the median, hollow marks times that do not count, crosses estimates, broad lines fits." }
+            p.lead { "Time of one call on one pinned core, against the degrees of freedom. Bars are 95 % intervals, hollow marks times that do not count, crosses estimates, broad lines fits." }
             @if times.is_empty() {
                 p.empty { "This run holds no times." }
             } @else {

@@ -283,13 +283,16 @@ fn void(timed: &[&Row]) -> [usize; 3] {
     kinds
 }
 
-/// A time with its interval: `312 ns [308, 317]`.
+/// A time with its interval, to the digit that the interval leaves: `312 ns [308, 317]`.
 fn time(row: &Row) -> String {
-    let ns = row.value.map_or_else(|| "–".to_owned(), short);
-    match row.ci_low.zip(row.ci_high) {
-        Some((low, high)) => format!("{ns} ns [{}, {}]", short(low), short(high)),
-        None => format!("{ns} ns"),
-    }
+    let Some(ns) = row.value else { return "– ns".into() };
+    let Some((low, high)) = row.ci_low.zip(row.ci_high).filter(|(low, high)| low < high) else { return format!("{} ns", short(ns)) };
+    let digit = (0.5 * (high - low)).log10().floor() as i32;
+    let held = |value: f64| {
+        let unit = 10.0_f64.powi(digit);
+        format!("{:.*}", (-digit).clamp(0, 9) as usize, (value / unit).round() * unit)
+    };
+    format!("{} ns [{}, {}]", held(ns), held(low), held(high))
 }
 
 /// A ratio in a small cell.
@@ -306,5 +309,21 @@ fn step(ratio: f64) -> &'static str {
         r if r < 1.5 => "ahead1",
         r if r < 3.0 => "ahead2",
         _ => "ahead3",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_has_the_digits_that_its_interval_leaves() {
+        let told = |value: f64, low: f64, high: f64| time(&Row::default().measured(value, low, high));
+        assert_eq!(told(19581.0, 18970.0, 20211.0), "19600 ns [19000, 20200]");
+        assert_eq!(told(762.4, 760.9, 763.8), "762 ns [761, 764]");
+        assert_eq!(told(33.512, 33.487, 33.541), "33.51 ns [33.49, 33.54]");
+        assert_eq!(told(0.8, 0.2, 3.0), "1 ns [0, 3]");
+        assert_eq!(told(100.0, 100.0, 100.0), "100 ns");
+        assert_eq!(time(&Row::default()), "– ns");
     }
 }
