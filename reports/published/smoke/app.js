@@ -238,10 +238,17 @@ featherbench.dressed((root) => {
     await Promise.all(wanted.map(bring));
   }
 
-  // An address may name an element of a section that is not here yet.
+  // What the address names: an element, or a drawing with what is chosen.
+  function named() {
+    const text = decodeURIComponent(location.hash.slice(1));
+    if (!text.startsWith("figure=")) return text.startsWith("rows=") ? "" : text;
+    try { return String(JSON.parse(text.slice(7))[0]); } catch { return ""; }
+  }
+
+  // It may be in a section that is not here yet.
   async function follow() {
-    const id = decodeURIComponent(location.hash.slice(1));
-    if (id === "" || id.startsWith("rows=")) return;
+    const id = named();
+    if (id === "") return;
     goal = id;
     if (byId(id)) return;
     await everything();
