@@ -32,7 +32,7 @@
 //! ```text
 //! one block of calls           Evaluation::clock              engines    clock readings around the loop, in the process that runs it
 //!   → ns per call              Samples                        studies    candidate × round; also in timing.jsonl
-//!   → median and ratio         Estimate                       studies    of each process; their scatter makes the interval
+//!   → lower decile and ratio   Estimate                       studies    of each process; their spread makes the interval
 //!   → one Row                  value, ci_low, ci_high, valid  results    valid = false where the A/A replicate is far from 1
 //!   → a mark with its interval Section                        studies    the section of the timing study; report draws the frame
 //! ```

@@ -2,13 +2,13 @@
 //!
 //! Each round gives every candidate one block, in random order. A process's number for a candidate is the *lower decile* of its blocks. A
 //! disturbance (another program, a processor's frequency, an unlucky layout of the memory) makes blocks longer, never shorter. So the decile
-//! is near the time without it, as the median is not: between processes it scatters half as much. A ratio is that of two deciles of one
+//! is near the time without it, as the median is not: its spread between processes is half as large. A ratio is that of two deciles of one
 //! process, whose blocks alternated.
 //!
 //! Where a process has its code and data is an accident that lasts as long as it does. So an experiment is made in several processes, one
-//! after another, over the length of the study. Each gives one number. In one of ten something else went on all the while. So an estimate is
-//! the geometric mean without the least and the largest of them, and its interval is that of a trimmed mean (Yuen, Biometrika 61, 1974):
-//! whatever differs between processes or moments is in it.
+//! after another, over the length of the study. Each gives one number. In one of ten something else went on all the while. So the least and
+//! the largest are left out. An estimate is the geometric mean of the others. Its interval is that of a trimmed mean (Yuen, Biometrika 61,
+//! 1974): whatever differs between processes or moments is in it.
 
 use crate::robot::relocation::STACK_PLACES;
 use featherbench_results::STUDENT;

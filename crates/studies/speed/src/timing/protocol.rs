@@ -2,7 +2,7 @@
 //!
 //! Rounds are grouped into *epochs*. At the start of an epoch all candidates relocate their data, in random order, each in its own process.
 //! The place of data in memory changes a time by up to some percent, and a ratio from one layout would depend on chance. The stack moves, too:
-//! each of its places in a cache line has as many epochs as the others.
+//! each of its places in a cache line has two epochs.
 //! In each round every candidate has one block, in random order, from a random state on. The batch begins again at its end. Before a block
 //! its candidate makes a tenth as many calls that are not timed, at the states before. Other candidates ran since its last block, and their
 //! data are in the caches.
