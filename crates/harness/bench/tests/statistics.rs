@@ -40,7 +40,7 @@ fn frequencies(random: &mut Random, at: [usize; 2]) -> [f64; 2] {
     jitter(random, at).map(|time| if slow { 1.3 * time } else { time })
 }
 
-/// Each process has its own factor for each of the two: 0.5 % of scatter, many times what blocks within a process would show.
+/// Each process has its own factor for each of the two: a spread of 0.5 %, many times what blocks within a process would show.
 fn places(random: &mut Random, at: [usize; 2]) -> [f64; 2] {
     // The experiment's number is in the state of the generator, which is another one in each.
     thread_local!(static FACTORS: std::cell::Cell<[f64; 2]> = const { std::cell::Cell::new([1.0; 2]) });

@@ -47,7 +47,7 @@ pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;
 pub use properties::{Base, Feature, Properties};
 pub use quantity::{Asked, Extent, Extents, Measure, Quantity};
-pub use ranking::{Errors, Ranked, Ranking, Recorded, Times};
+pub use ranking::{Errors, Ranked, Ranking, RecordedTimes, Times};
 pub use row::{MARGIN_LIMIT, RATIO};
 pub use run_info::{
     Convention, Culprit, EngineInfo, EngineSource, Expectation, GateKind, GitInfo, Host, ModelOrigin, RUN_FORMAT, RobotInfo, RunInfo,

@@ -79,8 +79,8 @@ pub struct Times {
 /// Times of an engine over ours that another machine measured: a line of `datasets/speed/MACHINE/times.json`, and of `run.json` of later runs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Recorded {
-    /// Model name of the processor.
+pub struct RecordedTimes {
+    /// Model name of the processor, and its widest registers.
     pub machine: String,
     /// When the run started that measured them.
     pub started: String,
@@ -102,7 +102,7 @@ pub struct Recorded {
     pub estimated: bool,
 }
 
-impl Recorded {
+impl RecordedTimes {
     /// The lines of a file.
     ///
     /// # Errors

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::disk::{atomic_write, read_text};
 use crate::names::words;
-use crate::{Properties, Recorded, ResultsError, Row, Verdict};
+use crate::{Properties, RecordedTimes, ResultsError, Row, Verdict};
 
 /// Format of `run.json` and `schema.json` that this version writes and reads.
 pub const RUN_FORMAT: u32 = 2;
@@ -75,7 +75,7 @@ pub struct RunInfo {
     pub shards: Vec<ShardInfo>,
     /// The times that were recorded on other machines (`datasets/speed`): a run times only what is built.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub recorded_times: Vec<Recorded>,
+    pub recorded_times: Vec<RecordedTimes>,
 }
 
 /// A part of a run that was evaluated apart.

@@ -6,9 +6,9 @@ use std::path::Path;
 
 use featherbench_results::{
     Base, COLUMNS, CSV_NAME, Checksums, ColumnType, Convention, Culprit, DRAWINGS_NAME, Drawing, DrawnBody, EngineInfo, EngineSource,
-    Expectation, Feature, GateKind, GitInfo, Host, Kind, ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, Recorded, Relation, ResultsError,
-    RobotInfo, Row, RunInfo, SCHEMA_NAME, ShardInfo, Verdict, atomic_write, canonical_json, read_csv, read_run, schema_json, to_csv,
-    write_csv, write_run,
+    Expectation, Feature, GateKind, GitInfo, Host, Kind, ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, RecordedTimes, Relation,
+    ResultsError, RobotInfo, Row, RunInfo, SCHEMA_NAME, ShardInfo, Verdict, atomic_write, canonical_json, read_csv, read_run, schema_json,
+    to_csv, write_csv, write_run,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -289,7 +289,7 @@ fn run_info() -> RunInfo {
         expected: vec![
             Expectation::new(GateKind::Counts, "id".into(), 2, 1).because("one is missing".into()).about(Culprit::engine("drake")),
         ],
-        recorded_times: vec![Recorded {
+        recorded_times: vec![RecordedTimes {
             machine: "another".into(),
             started: "2026-01-01T00:00:00Z".into(),
             engine: "drake".into(),

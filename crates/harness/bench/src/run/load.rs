@@ -27,7 +27,7 @@ impl Load {
     }
 }
 
-/// Seconds that all processors were not idle: user, nice, system, interrupts, and what the host took for others (steal). Guests are in user.
+/// Seconds that all processors were not idle: user, nice, system, interrupts, and what the host took for others (steal). The field `guest` is part of user.
 fn busy(line: &str) -> Option<f64> {
     let mut words = line.split_whitespace();
     (words.next() == Some("cpu")).then_some(())?;

@@ -3,15 +3,15 @@
 use featherbench_report::choices::{Choices, List};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Part, engine, labels};
-use featherbench_results::Recorded;
+use featherbench_results::RecordedTimes;
 use maud::{Markup, html};
 
 use super::TIMED;
 use super::section::{NARROW, NONE, ratio};
 
 /// The tables, one for each machine; nothing without any.
-pub(super) fn recorded(overview: &Overview, times: &[Recorded]) -> (Markup, Vec<Part>) {
-    let mut machines: Vec<(String, Vec<&Recorded>)> = Vec::new();
+pub(super) fn recorded(overview: &Overview, times: &[RecordedTimes]) -> (Markup, Vec<Part>) {
+    let mut machines: Vec<(String, Vec<&RecordedTimes>)> = Vec::new();
     for of in times {
         // Two records of one kind of machine have a day each.
         let name = format!("{}, {}", of.machine, of.started.get(..10).unwrap_or(&of.started));
@@ -34,7 +34,7 @@ pub(super) fn recorded(overview: &Overview, times: &[Recorded]) -> (Markup, Vec<
 }
 
 /// What one machine measured.
-fn table(overview: &Overview, times: &[&Recorded]) -> Markup {
+fn table(overview: &Overview, times: &[&RecordedTimes]) -> Markup {
     let mut engines: Vec<(&str, &str)> = times.iter().map(|of| (of.engine.as_str(), of.version.as_str())).collect();
     engines.dedup();
     html! {

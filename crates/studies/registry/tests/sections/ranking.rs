@@ -2,7 +2,7 @@
 
 use featherbench_registry::{ranking, sections};
 use featherbench_report::summary;
-use featherbench_results::{Ranked, Ranking, Recorded, Relation, Row, RunInfo, Verdict};
+use featherbench_results::{Ranked, Ranking, RecordedTimes, Relation, Row, RunInfo, Verdict};
 
 const UNIT: f64 = f64::EPSILON;
 
@@ -80,7 +80,7 @@ fn the_numbers_are_those_of_the_rows() {
 fn recorded_times_fill_what_was_not_measured() {
     let recorded = |machine: &str, median: f64| {
         let [least, most] = [median / 2.0, 2.0 * median];
-        ["drake", "mujoco", "dynibo"].map(|engine| Recorded {
+        ["drake", "mujoco", "dynibo"].map(|engine| RecordedTimes {
             machine: machine.into(),
             engine: engine.into(),
             quantity: "fd".into(),
@@ -88,7 +88,7 @@ fn recorded_times_fill_what_was_not_measured() {
             median,
             least,
             most,
-            ..Recorded::default()
+            ..RecordedTimes::default()
         })
     };
     let recorded_times = [recorded("a", 2.0), recorded("b", 4.0)].concat();
