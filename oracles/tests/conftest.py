@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from featherbench_oracles.testing.client import Oracle
-from featherbench_oracles.testing.described import PACKAGES
+from featherbench_oracles.testing.described import ALONE, PACKAGES, alone
 
 from .readers import Readers
 
@@ -18,15 +18,23 @@ WITNESS = {"truth": "mpmath"}  # the witness of truth, and the package that it n
 REQUIRE_ALL = "FEATHERBENCH_REQUIRE_ALL"
 
 
-def require(engine: str) -> None:
-    """Skip the test where the engine is not installed; fail it where FEATHERBENCH_REQUIRE_ALL is set."""
+def installed(engine: str) -> bool:
+    """Whether the engine is in this environment, or in the one that is its own."""
+    if engine in ALONE:
+        return alone(engine).exists()
     try:
         metadata.version(WITNESS.get(engine) or PACKAGES[engine].name)
     except metadata.PackageNotFoundError:
-        pass
-    else:
+        return False
+    return True
+
+
+def require(engine: str) -> None:
+    """Skip the test where the engine is not installed; fail it where FEATHERBENCH_REQUIRE_ALL is set."""
+    if installed(engine):
         return
-    reason = f"{engine} is not installed (`featherbench oracles install`)"
+    named = f" {engine}" if engine in ALONE else ""
+    reason = f"{engine} is not installed (`featherbench oracles install{named}`)"
     if os.environ.get(REQUIRE_ALL) is not None:
         pytest.fail(f"{reason}, and {REQUIRE_ALL} is set")
     pytest.skip(reason)

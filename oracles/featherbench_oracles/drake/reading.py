@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from math import pi
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 from pydrake.math import RigidTransform
@@ -20,12 +20,13 @@ from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
 from featherbench_oracles.core import bad_values, mimics
-from featherbench_oracles.core.algebra import Array, skew, symmetric
+from featherbench_oracles.core.algebra import Array, skew
 from featherbench_oracles.core.attributes import not_compared
+from featherbench_oracles.core.edits import Held, edited
 from featherbench_oracles.core.loaded import loaded
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading
-from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, inertial, note, overheard, roots
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, note, overheard, roots
 from featherbench_oracles.core.robot import Description
 
 TYPES = {
@@ -37,7 +38,6 @@ TYPES = {
     "planar": "planar",
     "universal": "universal",
 }
-EDITED = 1e-9  # relative difference of a link's mass or inertia that is reported as an edit
 
 
 def read(path: Path, form: str, base: str, make: Callable[[Description, MultibodyPlant, list[list[tree.Joint]]], Any]) -> Reading:
@@ -61,7 +61,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Multibod
     )
     own = {after.name for before, after in zip(links, named, strict=True) if before.name != after.name}  # not links of the file
     description["frames"] = [frame for frame in description["frames"] if frame["name"] not in own]
-    _note_edits(plant, path, notes)
+    notes.extend(edited(path, partial(_inertial, plant)))
     _note_rotors(plant, notes)
     if form == "urdf":
         notes.extend(_mimics(path, plant))
@@ -188,44 +188,10 @@ def _chained(links: list[Link], path: Path) -> list[Link]:
     return renamed
 
 
-def _note_edits(plant: MultibodyPlant, path: Path, notes: list[Header]) -> None:
-    """Note links of a URDF whose mass or principal moments are not the file's."""
-    context = plant.CreateDefaultContext()
-    for link in elements(path, "link"):
-        name = link.get("name")
-        if name is None or name == "world" or not plant.HasBodyNamed(name):
-            continue
-        held = plant.GetBodyByName(name).CalcSpatialInertiaInBodyFrame(context)
-        mass, com = held.get_mass(), held.get_com()
-        inertia = held.CalcRotationalInertia().CopyToFullMatrix3() + mass * skew(com) @ skew(com)
-        words = _given(link, "mass", ["value"])
-        if not _near(words, [mass]):
-            notes.append(note("mass_edited", name, f"{' '.join(words)} kg in the file became {mass} kg", inertial(mass, com, inertia)))
-        words = _given(link, "inertia", ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"])
-        try:
-            given = np.linalg.eigvalsh(symmetric(np.array(words, dtype=float))).tolist()
-        except ValueError:
-            given = []
-        moments = np.linalg.eigvalsh(inertia).tolist()
-        if not _near(given, moments):
-            became = f"moments {_few(given)} in the file became {_few(moments)} kg m²"
-            notes.append(note("inertia_edited", name, became, inertial(mass, com, inertia)))
-
-
-def _given(link: ElementTree.Element, tag: str, keys: list[str]) -> list[str]:
-    """Find the numbers of a link's inertial as text; an absent one is 0."""
-    element = link.find(f"inertial/{tag}")
-    return [(element.get(key) if element is not None else None) or "0" for key in keys]
-
-
-def _near(given: list[Any], held: list[float]) -> bool:
-    """Whether the engine holds the numbers of the file."""
-    try:
-        x, y = np.array(given, dtype=float), np.array(held)
-        return x.shape == y.shape and bool(np.abs(x - y).max() <= EDITED * np.abs(x).max())
-    except ValueError:
-        return False
-
-
-def _few(numbers: list[float]) -> str:
-    return "(" + ", ".join(f"{x:.6g}" for x in numbers) + ")"
+def _inertial(plant: MultibodyPlant, name: str) -> Held | None:
+    """Find what the plant holds of a link."""
+    if name == "world" or not plant.HasBodyNamed(name):
+        return None
+    held = plant.GetBodyByName(name).CalcSpatialInertiaInBodyFrame(plant.CreateDefaultContext())
+    mass, com = held.get_mass(), held.get_com()
+    return mass, com, held.CalcRotationalInertia().CopyToFullMatrix3() + mass * skew(com) @ skew(com)

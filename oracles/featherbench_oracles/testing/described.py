@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from pathlib import Path
 from typing import NamedTuple
 
 from featherbench_oracles.testing.client import HOME
@@ -15,12 +16,18 @@ class Package(NamedTuple):
     version: str
 
 
-def _read() -> dict[str, Package]:
-    """Read the table of each engine in Python, in the order of the file."""
+def _read(kind: str) -> dict[str, Package]:
+    """Read the table of each engine that is started so, in the order of the file."""
     tables = tomllib.loads((HOME / "engines.toml").read_text(encoding="utf-8"))
-    python = {name: table["package"] for name, table in tables.items() if table["start"]["kind"] == "python"}
+    python = {name: table["package"] for name, table in tables.items() if table["start"]["kind"] == kind}
     return {name: Package(package["name"], package["version"]) for name, package in python.items()}
 
 
-PACKAGES = _read()
+PACKAGES = _read("python")
 ENGINES = tuple(PACKAGES)
+ALONE = tuple(_read("python_alone"))  # each in an environment of its own
+
+
+def alone(engine: str) -> Path:
+    """Find the interpreter of an engine's own environment, which `featherbench oracles install ENGINE` makes."""
+    return HOME.parent / "target/oracles" / engine / "venv/bin/python"

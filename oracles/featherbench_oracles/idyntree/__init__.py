@@ -1,0 +1,1 @@
+"""iDynTree as an oracle."""
