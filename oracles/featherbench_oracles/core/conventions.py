@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from featherbench_oracles.core.algebra import Array, skew
 
 CLOSE, APART = 1e-12, 1e-2  # rounding of numbers of size one; much less than a wrong convention changes
+SINGLE = 1e-4  # the same rounding in single precision, of numbers of size up to a hundred
 
 
 @dataclass(frozen=True)
@@ -28,15 +29,18 @@ class Claim:
         The engine's answer, and the answer by the convention, of one shape and unit.
     otherwise : tuple of ndarray
         The answer by each alternative, of a shape that broadcasts to that one.
+    close : float
+        The rounding that is allowed.
     """
 
     measured: Array
     convention: Array
     otherwise: tuple[Array, ...]
+    close: float = CLOSE
 
     def swapped(self) -> Claim:
         """Claim the first alternative in place of the convention."""
-        return Claim(self.measured, np.broadcast_to(self.otherwise[0], self.measured.shape), (self.convention,))
+        return Claim(self.measured, np.broadcast_to(self.otherwise[0], self.measured.shape), (self.convention,), self.close)
 
     def refutation(self) -> str | None:
         """Say what is wrong with the claim.
@@ -48,7 +52,7 @@ class Claim:
         """
         if self.measured.shape != self.convention.shape:
             return f"shape {self.measured.shape}, not {self.convention.shape}"
-        if not np.abs(self.measured - self.convention).max() <= CLOSE:
+        if not np.abs(self.measured - self.convention).max() <= self.close:
             return f"measured {self.measured.tolist()}, by the convention {self.convention.tolist()}"
         for other in self.otherwise:
             if not np.abs(self.measured - other).max() >= APART:
@@ -60,7 +64,7 @@ Claims = Iterator[Claim]
 Convention = Callable[[], Claims]
 
 
-def claim(measured: ArrayLike, convention: ArrayLike, *otherwise: ArrayLike) -> Claim:
+def claim(measured: ArrayLike, convention: ArrayLike, *otherwise: ArrayLike, close: float = CLOSE) -> Claim:
     """Claim that measured numbers are those of a convention.
 
     Parameters
@@ -69,6 +73,8 @@ def claim(measured: ArrayLike, convention: ArrayLike, *otherwise: ArrayLike) -> 
         The engine's answer, and the answer by the convention, of one shape and unit.
     *otherwise : array_like
         The answer by each alternative. There is at least one.
+    close : float
+        The rounding that is allowed: `SINGLE` of an engine in single precision.
 
     Returns
     -------
@@ -77,7 +83,7 @@ def claim(measured: ArrayLike, convention: ArrayLike, *otherwise: ArrayLike) -> 
     """
     if not otherwise:
         raise ValueError("a convention without an alternative says nothing")
-    return Claim(np.array(measured, float), np.array(convention, float), tuple(np.array(other, float) for other in otherwise))
+    return Claim(np.array(measured, float), np.array(convention, float), tuple(np.array(other, float) for other in otherwise), close)
 
 
 def about(axis: Array, angle: float) -> Array:

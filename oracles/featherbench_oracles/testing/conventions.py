@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import sys
+from contextlib import redirect_stdout
 from importlib import import_module
 
 from featherbench_oracles.core.conventions import Convention
@@ -27,4 +28,6 @@ def refutations(engine: str) -> Refutations:
 
 
 if __name__ == "__main__":
-    json.dump(refutations(sys.argv[1]), sys.stdout)
+    with redirect_stdout(sys.stderr):  # some engines print
+        found = refutations(sys.argv[1])
+    json.dump(found, sys.stdout)

@@ -18,7 +18,7 @@ use crate::{message, report, run};
 use ::featherbench_results::Verdict;
 use featherbench_bench::run::{Opening, Run};
 use featherbench_bench::{
-    Cell, Context, Engine, Engines, FileBase, FileContent, FileFormat, OWN, Robot, RobotFile, RobotSource, hash, provenance,
+    Cell, Context, DescribedEngine, Engine, Engines, FileBase, FileContent, FileFormat, OWN, Robot, RobotFile, RobotSource, hash, provenance,
 };
 use featherbench_comparison::import::{answers, overflow, singular};
 use featherbench_comparison::{Agreement, Import};
@@ -40,7 +40,7 @@ const LARGE: usize = 500;
 pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let start = Instant::now();
     let described = oracles::described(root)?;
-    let engines = engines(args, &described)?;
+    let engines = engines(root, args, &described)?;
     let compiler = described.compiler(FileFormat::Mjcf).map_or("", |engine| engine.name.as_str());
     // Bad files are told before anything is installed or started, and the others are compared.
     let mut bad: Vec<Fail> = Vec::new();
@@ -51,6 +51,9 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let gates = root.read_gates()?;
     let hash = hashes(&files);
     let mut robots: Vec<Robot> = Vec::new();
+    for engine in described.iter().filter(|engine| engines.contains(&engine.name)) {
+        oracles::install_alone(root, engine, &described)?;
+    }
     tell!("starting {} …", engines.join(", "));
     let limits = Limits { answer: Duration::from_secs(args.timeout), ..Limits::default() };
     let mut opened = engines::open(root, &Asked::live(root, &engines, limits))?;
@@ -178,10 +181,11 @@ impl Source {
     }
 }
 
-/// The engines that are asked: those that read files.
-fn engines(args: &CompareArgs, described: &Engines) -> Result<Vec<String>, Fail> {
+/// The engines that are asked: those that read files. By default those are left out that have an environment of their own which is not there.
+fn engines(root: &Root, args: &CompareArgs, described: &Engines) -> Result<Vec<String>, Fail> {
     let readers = described.names(|engine| !engine.reads.is_empty());
-    let all = || readers.iter().map(|&name| name.to_owned()).collect();
+    let at_hand = |engine: &&DescribedEngine| !engine.reads.is_empty() && oracles::is_at_hand(root, engine, described);
+    let all = || described.iter().filter(at_hand).map(|engine| engine.name.clone()).collect();
     let engines = args.engines.clone().unwrap_or_else(all);
     match engines.iter().find(|name| !readers.contains(&name.as_str())) {
         Some(unknown) => {

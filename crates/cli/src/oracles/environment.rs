@@ -178,7 +178,7 @@ impl<'a> Alone<'a> {
         let Self { engine, .. } = self;
         let advice = format!("{} needs {}; suites that do not ask for it need none of it", engine.name, engine.needs.join(" and, "));
         let stamp = self.stamp()?;
-        let bar = spinner(&format!("installing {} …", engine.title));
+        let bar = spinner(&format!("installing {} ({}) …", engine.title, engine.needs.join(", ")));
         // All packages are pinned: an installer that chose others would make other code.
         let packages: [OsString; 4] = ["--no-deps".into(), self.pin.clone().into(), "-r".into(), self.requirements().into_os_string()];
         let environment = Environment::install(&bar, &self.folder().join("venv"), &advice, &packages)?;

@@ -77,6 +77,18 @@ pub fn install_named(root: &Root, args: &InstallArgs) -> Result<(), Fail> {
     if native.is_empty() { Ok(()) } else { native::install(root, &engines, &native) }
 }
 
+/// Makes the environment of an engine that has one of its own, unless it is there.
+pub fn install_alone(root: &Root, engine: &DescribedEngine, engines: &Engines) -> Result<(), Fail> {
+    let Start::PythonAlone { module } = &engine.start else { return Ok(()) };
+    Alone::new(root, engine, engines, module).install().map(|_| ())
+}
+
+/// Whether an engine is in the shared environment, which is made for every run, or its own environment is there.
+pub fn is_at_hand(root: &Root, engine: &DescribedEngine, engines: &Engines) -> bool {
+    let Start::PythonAlone { module } = &engine.start else { return true };
+    Alone::new(root, engine, engines, module).command().is_ok()
+}
+
 /// Makes the environment unless it is there; what was downloaded before a break is used again.
 pub fn install(root: &Root) -> Result<PathBuf, Fail> {
     if let Some(python) = python(root) {

@@ -1,37 +1,9 @@
 //! Adam, if it is installed: C code that is generated and compiled for each robot, its answers against our own kernels, and what it refuses.
 
-use super::native::{self, PATIENT};
-use super::{Outcome, Unpassed, oracle_command};
-use crate::support::{Ended, project};
+use super::native;
 use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
 use featherbench_engines::Oracle;
 use featherbench_results::{Base, ModelOrigin};
-use std::ffi::OsString;
-use std::process::Command;
-
-/// The command of its oracle.
-fn command() -> Result<Vec<OsString>, Unpassed> {
-    let python = project().join("target/oracles/adam/venv/bin/python");
-    let installed = python.exists() && project().join("target/oracles/adam/installed").exists();
-    let skipped = || Unpassed::Skipped("adam is not installed (`featherbench oracles install adam`)".into());
-    if installed { Ok(oracle_command(&python, "adam")) } else { Err(skipped()) }
-}
-
-/// A test that asks adam.
-pub fn with_adam(test: fn(&Oracle)) -> Outcome {
-    let command = command()?;
-    test(&Oracle::start(command, PATIENT).unwrap());
-    Ok(())
-}
-
-/// It conforms to the protocol. Compiling takes longer than most answers.
-pub fn conforms() -> Outcome {
-    let command = command()?;
-    let mut check = Command::new(env!("CARGO_BIN_EXE_featherbench"));
-    check.current_dir(project()).args(["oracles", "check", "--timeout", "600"]).args(command);
-    Ended::new(check.output().unwrap()).expect(0, &["conforms", "adam has no armature"]);
-    Ok(())
-}
 
 /// It agrees on chains, trees and arms, fixed and floating, with gravity of any direction.
 pub fn agrees(adam: &Oracle) {

@@ -1,35 +1,17 @@
 //! Clarabel, if it is installed: a solver of convex problems, which knows no robots.
 
-use super::{Outcome, Unpassed, oracle_command};
+use super::{Outcome, alone};
 use crate::support::{Ended, Sandbox, project};
 use featherbench_identification::{Arm, Log, Samples, Scenario, Terms};
 use serde_json::Value;
-use std::path::PathBuf;
 use std::process::Command;
-
-/// Its interpreter, if it is installed.
-fn python() -> Result<PathBuf, Unpassed> {
-    if project().join("target/oracles/clarabel/installed").exists() {
-        return Ok(project().join("target/oracles/clarabel/venv/bin/python"));
-    }
-    Err(Unpassed::Skipped("clarabel is not installed (`featherbench oracles install clarabel`)".into()))
-}
-
-/// It conforms to the protocol: relaxed contacts and semidefinite least squares have the answers that they have by hand.
-pub fn conforms() -> Outcome {
-    let python = python()?;
-    let mut check = Command::new(env!("CARGO_BIN_EXE_featherbench"));
-    check.current_dir(project()).args(["oracles", "check"]).args(oracle_command(&python, "clarabel"));
-    Ended::new(check.output().unwrap()).expect(0, &["conforms"]);
-    Ok(())
-}
 
 /// `identify --method semidefinite` solves its programme with it.
 ///
 /// - Without noise the programme's solution is the truth: the base parameters are those of least squares.
 /// - With noise least squares give a body that cannot exist, and the programme does not.
 pub fn identifies() -> Outcome {
-    python()?;
+    alone::command("clarabel")?;
     let scenario = Scenario::of(&Arm::general(3, 4), Terms::NONE, 150).unwrap();
     let sandbox = Sandbox::new();
     let robot = sandbox.path("arm.json");

@@ -1,4 +1,5 @@
-//! Tests that need what a new machine may not have: Python, the reference engines, rapier, dynibo, faer, nalgebra, adam, clarabel, a browser.
+//! Tests that need what a new machine may not have: Python, the reference engines, rapier, dynibo, faer, nalgebra, adam, iDynTree, MuJoCo
+//! Warp, Newton, clarabel, a browser.
 //!
 //! Each is run if it can be, and otherwise listed as skipped. With `FEATHERBENCH_REQUIRE_ALL` set, as in CI, a skip is a failure. The
 //! native oracles are required at night only, with `FEATHERBENCH_NIGHTLY` set.
@@ -6,6 +7,7 @@
 
 mod adam;
 mod added;
+mod alone;
 mod clarabel;
 mod compared;
 mod compiled;
@@ -93,14 +95,21 @@ fn main() -> ExitCode {
         ("nalgebra conforms", || library::conforms("nalgebra", &["solve by dense"])),
         ("nalgebra factorizes", || library::with("nalgebra", factors::agrees)),
         ("nalgebra says what is too large", || library::with("nalgebra", factors::refuses)),
-        ("adam conforms", adam::conforms),
-        ("adam agrees, fixed and floating", || adam::with_adam(adam::agrees)),
-        ("adam is clocked beside its loop", || adam::with_adam(adam::is_clocked)),
-        ("adam refuses what it has not", || adam::with_adam(adam::refuses)),
+        ("adam conforms", || alone::conforms("adam", &["adam has no armature"])),
+        ("adam agrees, fixed and floating", || alone::with("adam", adam::agrees)),
+        ("adam is clocked beside its loop", || alone::with("adam", adam::is_clocked)),
+        ("adam refuses what it has not", || alone::with("adam", adam::refuses)),
+        ("iDynTree conforms", || alone::conforms("idyntree", &["iDynTree has no armature"])),
+        ("iDynTree agrees, fixed and floating", || alone::with("idyntree", alone::agrees)),
+        ("iDynTree has another Coriolis matrix", || alone::with("idyntree", alone::idyntree_has_another_coriolis_matrix)),
+        ("MuJoCo Warp conforms, in single precision", || alone::conforms("mujoco_warp", &[])),
+        ("MuJoCo Warp agrees, in single precision", || alone::with("mujoco_warp", alone::agrees)),
+        ("Newton conforms, in single precision", || alone::conforms("newton", &[])),
+        ("Newton agrees, in single precision", || alone::with("newton", alone::agrees)),
         ("the lesson's arm in Rust is our kernels' arm", || lesson::agrees_in(Language::Rust)),
         ("the lesson's arm in C is our kernels' arm", || lesson::agrees_in(Language::C)),
         ("the lesson's arm in Python is our kernels' arm", || lesson::agrees_in(Language::Python)),
-        ("clarabel conforms", clarabel::conforms),
+        ("clarabel conforms", || alone::conforms("clarabel", &[])),
         ("clarabel identifies an arm", clarabel::identifies),
         ("rapier that cannot be built is named", rapier::not_to_be_built),
         ("rapier conforms", rapier::conforms),

@@ -362,7 +362,7 @@ fn the_engines_of_the_project_are_described() {
     let oracles = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../oracles");
     let engines = Engines::read(&oracles.join("engines.toml")).unwrap();
     let names = engines.names(|_| true);
-    let all = "pinocchio mujoco drake dart rapier dynibo faer nalgebra adam clarabel soromox pyelastica pinocchio-clang pinocchio-gcc mujoco-native";
+    let all = "pinocchio mujoco drake dart rapier dynibo faer nalgebra adam idyntree mujoco_warp newton clarabel soromox pyelastica pinocchio-clang pinocchio-gcc mujoco-native";
     assert_eq!(names.join(" "), all);
     assert_eq!(engines.compiler(FileFormat::Mjcf).unwrap().name, "mujoco");
 }

@@ -29,8 +29,15 @@ pub struct Identity {
     pub version: String,
     /// Our own, recorded or live.
     pub source: EngineSource,
-    /// Language, flags, versions of libraries.
+    /// Language, flags, versions of libraries; `precision` is `single` of an engine that computes in `f32`.
     pub build: BTreeMap<String, String>,
+}
+
+impl Identity {
+    /// The arithmetic that it computes in.
+    pub fn scalar(&self) -> &'static str {
+        if self.build.get("precision").is_some_and(|precision| precision == "single") { "f32" } else { "f64" }
+    }
 }
 
 /// An engine that can be asked about robots.

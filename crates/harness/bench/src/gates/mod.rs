@@ -11,7 +11,7 @@ use crate::gates::known::Known;
 use crate::gates::ranges::files;
 use crate::robot::class::named;
 use crate::{Deviation, DeviationFile, Engines, HarnessError, Lack, Mean, Ranges, Reproduction, Suite};
-use featherbench_results::{Culprit, Expectation, GateKind, Properties, Relation, Row, Verdict};
+use featherbench_results::{Culprit, Expectation, GateKind, Properties, Quantity, Relation, Row, Verdict};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, HashMap};
@@ -224,7 +224,8 @@ impl Gates {
                     Factor::Depth => depth as f64,
                     Factor::DepthAndAmplification => depth as f64 * amplification,
                 };
-                row.gated(value, Relation::Le, gate.bound * factor)
+                let bound = gate.bound * factor * rounding(&row);
+                row.gated(value, Relation::Le, bound)
             }
         };
         self.explain(row)
@@ -271,6 +272,12 @@ impl Gates {
         }
         conditions
     }
+}
+
+/// The rounding of a row's arithmetic over that of its gate, which is stated for `f64`. Quantities of single precision have gates of their own.
+fn rounding(row: &Row) -> f64 {
+    let own = Quantity::parse(&row.quantity).is_some_and(|quantity| quantity.precision() == "f32");
+    if row.scalar == "f32" && !own { f64::from(f32::EPSILON) / f64::EPSILON } else { 1.0 }
 }
 
 /// The sharpest bound for each kind of joint and base.

@@ -30,10 +30,11 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// The cell in which an engine computes a quantity of a robot in `f64`.
+    /// The cell in which an engine computes a quantity of a robot, in the arithmetic of the engine.
     pub fn new(study: &str, robot: &Robot, engine: &Identity, quantity: &str, method: impl Into<String>, params: impl Serialize) -> Self {
         Self {
             robot_hash: robot.hash.clone(),
+            scalar: engine.scalar().into(),
             ..Self::of_case(study, &robot.name, (&engine.name, &engine.version), quantity, method, params)
         }
     }

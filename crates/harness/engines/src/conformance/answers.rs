@@ -159,7 +159,7 @@ fn readback(exchange: &mut Exchange, scene: &Scene, found: &[f64]) {
     const FIELDS: [(&str, usize, usize); 5] =
         [("mass", 0, 1), ("com", 1, 4), ("inertia", 4, 10), ("the placement's rotation", 10, 19), ("the placement's translation", 19, 22)];
     let given = scene.robot.readback();
-    if scene.error(Quantity::Readback, &given, found) <= Scene::tolerance(Quantity::Readback, "") {
+    if scene.error(Quantity::Readback, &given, found) <= scene.tolerance(Quantity::Readback, "") {
         return exchange.note(Standing::Right, "prepare reads the robot back", "", &[]);
     }
     let rows = given.chunks_exact(22).zip(found.chunks_exact(22)).zip(&scene.robot.description.bodies);
@@ -203,7 +203,7 @@ impl Answers {
                 compared.len(),
                 first.scene.shows,
                 first.error,
-                Scene::tolerance(quantity, method)
+                first.tolerance
             );
             let advice = advice(&compared, quantity);
             let lines: Vec<&str> = advice.iter().map(String::as_str).collect();
@@ -228,7 +228,7 @@ impl<'a> Compared<'a> {
 
     fn new(scene: &'a Scene, quantity: Quantity, method: &str, value: &'a [f64]) -> Option<Self> {
         let error = scene.error(quantity, &scene.featherbench(quantity)?, value);
-        Some(Self { scene, value, error, quantity, tolerance: Scene::tolerance(quantity, method) })
+        Some(Self { scene, value, error, quantity, tolerance: scene.tolerance(quantity, method) })
     }
 
     fn right(&self) -> bool {

@@ -132,7 +132,7 @@ fn files() -> Result<[Written; 3], String> {
 ///
 /// # Errors
 /// A sentence, when the files cannot be written.
-pub(super) fn read(exchange: &mut Exchange, offered: &Methods) -> Result<(), String> {
+pub(super) fn read(exchange: &mut Exchange, offered: &Methods, rounding: f64) -> Result<(), String> {
     let folder = tempfile::tempdir().map_err(|error| format!("the files to be read cannot be written: {error}"))?;
     let offered: Methods = offered.clone().into_iter().filter(|(name, _)| Quantity::parse(name).is_some()).collect();
     let as_read = |name: &str| Quantity::parse(name).is_some_and(|quantity| AS_READ.contains(&quantity));
@@ -155,7 +155,7 @@ pub(super) fn read(exchange: &mut Exchange, offered: &Methods) -> Result<(), Str
         notes(exchange, &answer);
         compare(exchange, &file, &reading);
         let robot = Robot::new(&reading.description, "conformance", ModelOrigin::Generated, robots::STATES, robots::SEED);
-        let scene = Scene::new(file.shows, robot.map_err(|error| error.to_string())?);
+        let scene = Scene::new(file.shows, robot.map_err(|error| error.to_string())?, rounding);
         answers::evaluate_all(exchange, scenes.len(), &scene, &due, &mut answers);
         if let Some((quantity, methods)) = beside.iter().next() {
             let header = json!({"op": "evaluate", "quantity": quantity, "method": methods[0], "first": 0, "count": 1, "body": 0});

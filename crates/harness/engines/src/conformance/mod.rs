@@ -97,10 +97,10 @@ pub fn check_program(command: &[OsString], limits: Limits, watch: &dyn Fn(&str))
 /// # Errors
 /// A sentence, when our own robots or files cannot be made.
 pub fn check(start: &dyn Fn() -> Result<Box<dyn Connection>, String>, watch: &dyn Fn(&str)) -> Result<Conformance, String> {
-    let scenes: Vec<Scene> = robots::all()?.into_iter().map(|(shows, robot)| Scene::new(shows, robot)).collect();
     let mut exchange = Exchange::new(start);
     watch("hello");
     let Some(hello) = protocol::hello(&mut exchange) else { return Ok(exchange.conformance) };
+    let scenes: Vec<Scene> = robots::all()?.into_iter().map(|(shows, robot)| Scene::new(shows, robot, hello.rounding())).collect();
     watch("what has no answer");
     protocol::before_prepare(&mut exchange);
     // A solver of problems, or a residual, need not have quantities.
@@ -155,5 +155,5 @@ fn robots_of(exchange: &mut Exchange, scenes: &[Scene], hello: &Hello, watch: &d
     steps::judge(exchange, &extra, &stepped);
     answers::lacking(exchange, offered);
     watch("files");
-    files::read(exchange, offered)
+    files::read(exchange, offered, hello.rounding())
 }

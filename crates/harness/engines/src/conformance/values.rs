@@ -13,6 +13,10 @@ pub(super) const RIGHT: f64 = 1e-11;
 /// The same for forward dynamics, where an explicit inverse loses the condition number of M, here up to a thousand.
 pub(super) const RIGHT_FORWARD: f64 = 1e-9;
 
+/// The same for an oracle in single precision: its rounding is 1e-7, times the condition number of M at most 1e-4. Mistaken conventions that
+/// change less are not seen.
+pub(super) const RIGHT_SINGLE: f64 = 1e-3;
+
 /// The same for derivatives by finite differences, whose digits belong to the study of derivatives. Steps of 1e-4 to 1e-8 leave 1e-2 at fast
 /// states. A mistaken sign, order or frame changes the largest entries by their own size.
 pub(super) const RIGHT_DIFFERENCES: f64 = 0.1;
@@ -24,12 +28,14 @@ pub(super) struct Scene {
     at: Vec<Magnitudes>,
     /// featherbench's [`Quantity::BodyPlacement`].
     placement: Option<Vec<f64>>,
+    /// The rounding of the oracle's arithmetic, over that of double precision.
+    rounding: f64,
 }
 
 impl Scene {
-    pub(super) fn new(shows: &'static str, robot: Robot) -> Self {
+    pub(super) fn new(shows: &'static str, robot: Robot, rounding: f64) -> Self {
         let (at, placement) = (robot.magnitudes(), featherbench(&robot, Quantity::BodyPlacement));
-        Self { shows, robot, at, placement }
+        Self { shows, robot, at, placement, rounding }
     }
 
     /// The worst error of an answer over all states, in the measures of `featherbench_bench`.
@@ -51,7 +57,10 @@ impl Scene {
     }
 
     /// The error up to which an answer by a method is right.
-    pub(super) fn tolerance(quantity: Quantity, method: &str) -> f64 {
+    pub(super) fn tolerance(&self, quantity: Quantity, method: &str) -> f64 {
+        if self.rounding > 1.0 {
+            return RIGHT_SINGLE;
+        }
         match quantity {
             _ if Quantity::DERIVATIVES.contains(&quantity) && method.starts_with("difference") => RIGHT_DIFFERENCES,
             Quantity::ForwardDynamics | Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv => RIGHT_FORWARD,

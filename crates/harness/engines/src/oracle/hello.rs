@@ -87,6 +87,12 @@ impl Hello {
         Ok(())
     }
 
+    /// The rounding of its arithmetic, over that of double precision.
+    pub(crate) fn rounding(&self) -> f64 {
+        let single = self.build.get("precision").is_some_and(|precision| precision == "single");
+        if single { f64::from(f32::EPSILON) / f64::EPSILON } else { 1.0 }
+    }
+
     /// Whether its times are estimates.
     pub(crate) fn estimates(&self) -> bool {
         self.clock == "estimate"

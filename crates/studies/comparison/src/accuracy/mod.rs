@@ -100,8 +100,9 @@ impl Study for Accuracy {
                     if quantity == other_form {
                         continue;
                     }
+                    let scalar = if quantity.precision() == "f32" { "f32" } else { identity.scalar() };
                     cells.extend(engine.methods(quantity).into_iter().map(|method| Cell {
-                        scalar: quantity.precision().into(),
+                        scalar: scalar.into(),
                         ..Cell::new(self.name(), robot, identity, quantity.name(), method, &params)
                     }));
                 }

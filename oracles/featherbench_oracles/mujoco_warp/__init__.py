@@ -1,0 +1,1 @@
+"""MuJoCo Warp as an oracle: MuJoCo's models, computed in single precision by kernels that Warp compiles."""

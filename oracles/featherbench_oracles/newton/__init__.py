@@ -1,0 +1,1 @@
+"""Newton as an oracle, in single precision."""
