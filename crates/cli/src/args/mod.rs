@@ -181,6 +181,8 @@ body stands elsewhere in the world, and neither changes. Unfelt: a field that en
 show it. Rounding: such a field differs by 1024 ε of its scale at most. Not read: what enters neither, such as damping, friction, limits or the
 order of joints. Physics and pose make the exit code 1; with --strict the others do as well.
 
+--junit, --sarif and --annotations tell each difference that makes the exit code with file and line, for a robot's repository (ci/examples).
+
 The answer is first: one line for each robot and engine. With --json, standard output is one object: run, suite, status (alike, differs), report (the
 page), robots: [{robot, base, bodies, nv, reference, remarks, engines}], conditions: {met, all, unmet: [{what, reason, culprit}]}, refused (messages of
 files that cannot be compared). Each of engines has engine, version, loads (yes, altered, no), same, error (the largest scaled error of M and inverse
@@ -210,6 +212,15 @@ pub struct CompareArgs {
     /// Print everything as JSON.
     #[arg(long)]
     pub json: bool,
+    /// Write what differs as JUnit XML, with file and line.
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Write what differs as SARIF, with file and line.
+    #[arg(long, value_name = "FILE")]
+    pub sarif: Option<PathBuf>,
+    /// Print annotations of GitHub, too.
+    #[arg(long, conflicts_with = "json")]
+    pub annotations: bool,
     /// Longest wait for one answer of an engine, in seconds; it is asked no more about that robot then.
     #[arg(long, value_name = "SECONDS", default_value_t = 60)]
     pub timeout: u64,

@@ -1,6 +1,7 @@
 //! `featherbench compare`: do the engines read a robot's file alike, and if not, where and why?
 
 pub mod compared;
+pub mod forms;
 pub mod outcome;
 pub mod table;
 pub mod timeout;
@@ -15,7 +16,7 @@ use crate::progress::Bar;
 use crate::root::Root;
 use crate::run::About;
 use crate::{message, report, run};
-use ::featherbench_results::Verdict;
+use ::featherbench_results::{Verdict, atomic_write};
 use featherbench_bench::run::{Opening, Run};
 use featherbench_bench::{
     Cell, Context, DescribedEngine, Engine, Engines, FileBase, FileContent, FileFormat, OWN, Robot, RobotFile, RobotSource, hash, provenance,
@@ -109,6 +110,13 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let page = report::render(&folder, &run.info, &records)?;
     let info = &run.info;
     let unmet: Vec<_> = info.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).collect();
+    let found = forms::found(&robots, &records, args.strict);
+    if let Some(path) = &args.junit {
+        atomic_write(path, forms::junit(info, &found).as_bytes())?;
+    }
+    if let Some(path) = &args.sarif {
+        atomic_write(path, format!("{:#}\n", forms::sarif(&found)).as_bytes())?;
+    }
     if args.json {
         let told: Vec<(&Robot, &[String])> = robots.iter().zip(remarks.iter().map(|(_, remarks)| remarks.as_slice())).collect();
         say!("{:#}", compared::json(info, &page, &told, &records, &bad));
@@ -116,6 +124,9 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
         message::text(&table::answers(&answers(&records)));
         for (robot, (_, remarks)) in robots.iter().zip(&remarks) {
             message::text(&table::of(robot, remarks, &opened.engines, &records, args.explain));
+        }
+        if args.annotations {
+            message::text(&forms::annotations(&found));
         }
         say!("report: {}", page.display());
         for condition in &unmet {

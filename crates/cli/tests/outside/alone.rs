@@ -52,7 +52,7 @@ pub fn agrees(engine: &Oracle) {
             let mut description = upright.description.clone();
             description.gravity = gravity;
             let robot = Robot::new(&description, words, ModelOrigin::Generated, 12, 1).unwrap();
-            let floats = robot.properties().base == Base::Floating;
+            let floats = robot.properties().base == Base::Free;
             // What an engine does not offer of a robot is skipped by its reason; `oracles check` lists it. iDynTree's Coriolis matrix of a
             // floating robot is a known deviation.
             let found = native::compare(engine, &robot, if floats { &["coriolis_and_mass_matrices"] } else { &[] });

@@ -48,6 +48,20 @@ pub fn refused_files(_: &Path) -> Outcome {
     assert!(["altered", "no", "a: inertia by", "correct the file"].iter().all(|word| line("mujoco").contains(word)), "{lines:?}");
     assert!(["yes", "nothing"].iter().all(|word| line("pinocchio").contains(word)), "{lines:?}");
 
+    // The same for a repository: each form names the file, the line and the body.
+    let [junit, sarif] = ["found.xml", "found.sarif"].map(|name| sandbox.path(name));
+    let forms = ["--annotations", "--junit", junit.to_str().unwrap(), "--sarif", sarif.to_str().unwrap()];
+    let ended = compare(std::slice::from_ref(&file), &[&["--engines", "mujoco,pinocchio"], &forms[..]].concat(), &sandbox.path("forms"));
+    let place = format!("::error file={},line=1,title=mujoco%3A inertia::mujoco reads the inertia of a as ", file.display());
+    ended.expect(1, &[&place]);
+    let cases = std::fs::read_to_string(&junit).unwrap();
+    assert!(cases.contains("failures=\"1\"") && cases.contains("type=\"inertia\"") && cases.contains("flat.xml:1: "), "{cases}");
+    let read: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&sarif).unwrap()).unwrap();
+    let found = read["runs"][0]["results"].as_array().unwrap();
+    assert_eq!((found.len(), &found[0]["ruleId"], &found[0]["level"]), (1, &"inertia".into(), &"error".into()), "{read}");
+    let place = &found[0]["locations"][0]["physicalLocation"];
+    assert_eq!((place["region"]["startLine"].as_u64(), place["artifactLocation"]["uri"].as_str()), (Some(1), file.to_str()), "{read}");
+
     // The same for a program.
     let ended = compare(&[file], &["--engines", "mujoco,pinocchio", "--json"], &sandbox.path("json"));
     assert_eq!(ended.code, Some(1), "{ended:?}");

@@ -19,16 +19,41 @@ fn name(found: &Found) -> String {
     if parts.is_empty() { found.gate.as_str().to_owned() } else { parts.join("/") }
 }
 
-/// One test case for each new finding, which fails, and one for each condition that is met. Characters that XML cannot hold are left out.
+/// A test case that fails.
+pub struct Case {
+    /// Its class.
+    pub class: String,
+    /// Its name.
+    pub name: String,
+    /// The kind of failure.
+    pub kind: String,
+    /// The failure in a few words.
+    pub message: String,
+    /// All of it.
+    pub text: String,
+}
+
+/// One test case for each new finding, which fails, and one for each condition that is met.
 pub fn junit(run: &RunInfo, findings: &Findings) -> String {
-    let new: Vec<&Found> = findings.red().collect();
+    let case = |found: &Found| Case {
+        class: found.gate.as_str().into(),
+        name: name(found),
+        kind: found.level().into(),
+        message: found.short(),
+        text: format!("{}\n{}", found.sentence(), found.again),
+    };
+    junit_of(run, &findings.red().map(case).collect::<Vec<_>>())
+}
+
+/// The given test cases, which fail, and one for each condition that is met. Characters that XML cannot hold are left out.
+pub fn junit_of(run: &RunInfo, failing: &[Case]) -> String {
     let met: Vec<_> = run.expected.iter().filter(|condition| condition.is_met()).collect();
     let body = html! {
         testsuites name="featherbench" {
-            testsuite name=(run.suite) tests=(new.len() + met.len()) failures=(new.len()) timestamp=(run.started) {
-                @for found in &new {
-                    testcase classname=(found.gate) name=(name(found)) {
-                        failure type=(found.level()) message=(found.short()) { (found.sentence()) "\n" (found.again) }
+            testsuite name=(run.suite) tests=(failing.len() + met.len()) failures=(failing.len()) timestamp=(run.started) {
+                @for case in failing {
+                    testcase classname=(case.class) name=(case.name) {
+                        failure type=(case.kind) message=(case.message) { (case.text) }
                     }
                 }
                 @for condition in &met {
@@ -39,6 +64,11 @@ pub fn junit(run: &RunInfo, findings: &Findings) -> String {
     };
     let page = html! { (PreEscaped("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n")) (body) "\n" };
     page.into_string().chars().filter(|&c| c >= ' ' || matches!(c, '\n' | '\t')).collect()
+}
+
+/// A text in an annotation of GitHub.
+pub fn escaped(text: &str) -> String {
+    text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
 }
 
 /// A summary for a workflow's page.
@@ -73,7 +103,6 @@ fn cell(text: &str) -> String {
 
 /// One `::error` line for each new finding: a workflow of GitHub shows it beside the change.
 pub fn annotations(findings: &Findings) -> String {
-    let escaped = |text: &str| text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A");
     let title = |text: &str| escaped(text).replace(':', "%3A").replace(',', "%2C");
     findings
         .red()

@@ -87,7 +87,7 @@ impl Row {
     }
 
     /// The distance from one to the next number of the row's precision.
-    fn roundoff(&self) -> f64 {
+    pub fn roundoff(&self) -> f64 {
         if self.precision == "f32" { f64::from(f32::EPSILON) } else { f64::EPSILON }
     }
 }

@@ -277,7 +277,7 @@ impl Gates {
 /// The rounding of a row's arithmetic over that of its gate, which is stated for `f64`. Quantities of single precision have gates of their own.
 fn rounding(row: &Row) -> f64 {
     let own = Quantity::parse(&row.quantity).is_some_and(|quantity| quantity.precision() == "f32");
-    if row.scalar == "f32" && !own { f64::from(f32::EPSILON) / f64::EPSILON } else { 1.0 }
+    if own { 1.0 } else { row.roundoff() / f64::EPSILON }
 }
 
 /// The sharpest bound for each kind of joint and base.
