@@ -28,6 +28,7 @@ const STUDIES: &[&Entry] = &[
     &comparison::sweep::ENTRY,
     &comparison::conditioning::ENTRY,
     &comparison::derivatives::ENTRY,
+    &comparison::precision::ENTRY,
     &answers::contact::ENTRY,
     &answers::continuum::ENTRY,
     &answers::scenes::ENTRY,
