@@ -295,7 +295,7 @@ fn a_missing_python_is_exit_code_three() {
 #[test]
 fn what_cannot_be_compared_gets_advice() {
     let sandbox = Sandbox::new();
-    let cases: [(&str, &[u8], &str); 13] = [
+    let cases: [(&str, &[u8], &str); 12] = [
         ("part.stl", b"solid part", "a .stl file holds a shape"),
         ("model.bin", b"\x00\x01robot", "binary file"),
         ("renamed.urdf", b"\x00\x01robot", "binary file"),
@@ -304,10 +304,9 @@ fn what_cannot_be_compared_gets_advice() {
         ("robot.xacro", b"<robot/>", "xacro FILE > robot.urdf"),
         ("calls.urdf", b"<robot xmlns:xacro='x'><xacro:arm/></robot>", "xacro FILE > robot.urdf"),
         ("part.xml", b"<mujocoinclude/>", "whose root element is <mujoco>"),
-        ("world.sdf", b"<?xml version='1.0'?><sdf/>", "convert it to URDF or MJCF"),
         ("page.html", b"<!-- x --><html></html>", "the root element is <html>"),
         ("robot.json", b"{\"format\":1}", "looks like a description file"),
-        ("notes.txt", b"a robot", "neither URDF nor MJCF"),
+        ("notes.txt", b"a robot", "neither URDF, MJCF, SDF nor USD"),
         ("broken.urdf", b"not XML", "no XML element"),
     ];
     for (name, bytes, words) in cases {

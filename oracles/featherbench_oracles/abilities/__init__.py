@@ -21,9 +21,20 @@ from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading, State
 
 
+FORMATS = ("urdf", "mjcf", "sdf", "usd")
+
+
 @runtime_checkable
 class ReadsFiles(Protocol):
-    """The operation `import`."""
+    """The operation `import`.
+
+    Attributes
+    ----------
+    formats : tuple of str
+        What the engine's parser reads, of `FORMATS`.
+    """
+
+    formats: tuple[str, ...]
 
     def read(self, path: Path, form: str, base: str) -> Reading:
         """Read a file by the engine's own parser.
@@ -33,9 +44,9 @@ class ReadsFiles(Protocol):
         path : Path
             The file, which has passed the checks of `examination`.
         form : str
-            `urdf` or `mjcf`.
+            One of `formats`.
         base : str
-            `fixed` or `free`: whether the root of a URDF floats. An MJCF says itself what floats.
+            `fixed` or `free`: whether the root of a URDF floats. Other files say themselves what floats.
 
         Returns
         -------

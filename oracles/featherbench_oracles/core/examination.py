@@ -10,13 +10,15 @@ LARGEST = 10 << 20  # bytes
 MOST = 1000  # inclusions; a file counts as often as it is included
 
 
-def examined(path: Path) -> Path:
+def examined(path: Path, form: str) -> Path:
     """Check a file before an engine gets it.
 
     Parameters
     ----------
     path : Path
-        A URDF or MJCF file.
+        A robot's file.
+    form : str
+        Its format. A USD is checked by OpenUSD alone.
 
     Returns
     -------
@@ -28,16 +30,23 @@ def examined(path: Path) -> Path:
     ValueError
         If the file is absent, too large, no XML or nested too deeply, or (MJCF) includes itself or too many files.
     """
-    _examine(path, path.parent, [], [])
+    if form == "usd":
+        _examine_size(path)
+    else:
+        _examine(path, path.parent, [], [])
     return path
 
 
-def _examine(path: Path, folder: Path, above: list[Path], opened_before: list[Path]) -> None:
-    """Check a file and those that it includes, by their paths from `folder`. The engine reports included files that are absent."""
+def _examine_size(path: Path) -> None:
     if not path.is_file():
         raise ValueError(f"{path} is not a file")
     if path.stat().st_size > LARGEST:
         raise ValueError(f"{path} is larger than {LARGEST >> 20} MB")
+
+
+def _examine(path: Path, folder: Path, above: list[Path], opened_before: list[Path]) -> None:
+    """Check a file and those that it includes, by their paths from `folder`. The engine reports included files that are absent."""
+    _examine_size(path)
     if path in above:
         raise ValueError(f"{path} includes itself")
     opened_before.append(path)

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.messages import Header
-from featherbench_oracles.core.reading import Link, Place, elements, listed, note
+from featherbench_oracles.core.reading import Link, Place, listed, note
 
 ORTHONORMAL = 1e-9  # the largest entry of R R' - 1 that descriptions accept; a parser's rounding is a few eps
 
@@ -59,18 +58,18 @@ def sound(place: Place, about: str, notes: list[Header]) -> Place:
     return Place(nearest_rotation(place.rotation), np.nan_to_num(place.translation))
 
 
-def loaded(path: Path, links: Sequence[Link], notes: list[Header]) -> list[Link]:
+def loaded(links: Sequence[Link], notes: list[Header], moving: Sequence[str]) -> list[Link]:
     """Check the links that an engine holds after loading.
 
     Parameters
     ----------
-    path : Path
-        The file.
     links : sequence of Link
         What the engine holds.
     notes : list of dict
         Gets a note of each matrix that is no rotation, and of each mass or inertia that is no number (`not_a_mass`). If no joint is left,
         the joints of the file are noted (`no_joints`).
+    moving : sequence of str
+        The names of the joints of the file.
 
     Returns
     -------
@@ -87,7 +86,6 @@ def loaded(path: Path, links: Sequence[Link], notes: list[Header]) -> list[Link]
             notes.append(note("not_a_mass", link.name, held))
             mass, com, inertia = max(float(np.nan_to_num(mass)), 0.0), np.nan_to_num(com), np.nan_to_num(inertia)
         result.append(replace(link, place=place, joints=joints, mass=mass, com=com, inertia=inertia))
-    moving = [joint.get("name") or "without a name" for tag in ("joint", "freejoint") for joint in elements(path, tag)]
     if moving and not any(link.joints for link in links):
         notes.append(note("no_joints", None, f"it holds no joint, and the file has {len(moving)}: {listed(moving)}"))
     return result

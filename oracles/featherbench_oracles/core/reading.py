@@ -376,6 +376,11 @@ def elements(path: Path, tag: str) -> Iterator[ElementTree.Element]:
     return parsed(path).iter(tag)
 
 
+def moving(path: Path) -> list[str]:
+    """Find the joints of a URDF or an MJCF, by their names."""
+    return [joint.get("name") or "without a name" for tag in ("joint", "freejoint") for joint in elements(path, tag)]
+
+
 def roots(path: Path) -> list[str]:
     """Find the links of a URDF that no joint carries, in the file's order."""
     carried = {child.get("link") for child in elements(path, "child")}

@@ -27,6 +27,7 @@ from featherbench_oracles.abilities import (
     HasScenes,
     HasSemidefiniteSolvers,
     HasVariants,
+    FORMATS,
     ReadsFiles,
 )
 from featherbench_oracles.abilities.contact_steps import StepsOnContacts
@@ -166,7 +167,9 @@ class Session:
         form, base = _asked_file(header)
         if not isinstance(self.engine, ReadsFiles):
             raise Unsupported(f"{self.engine.name} reads no files")
-        reading = self.engine.read(examined(Path(header["file"])), form, base)
+        if form not in self.engine.formats:
+            raise Unsupported(f"{self.engine.name} reads {' and '.join(self.engine.formats).upper()}")
+        reading = self.engine.read(examined(Path(header["file"]), form), form, base)
         self.description, self.robot = reading.description, reading.robot
         answer = {"nq": self.description.nq, "nv": self.description.nv, "model": reading.model, "notes": reading.notes}
         if reading.written is not None:
@@ -180,7 +183,7 @@ class Session:
         form, _ = _asked_file(header)
         if not isinstance(self.engine, HasVariants):
             raise Unsupported(f"{self.engine.name} tells no variants of files")
-        return {"variants": self.engine.variants(examined(Path(header["file"])), form)}, {}
+        return {"variants": self.engine.variants(examined(Path(header["file"]), form), form)}, {}
 
     def set_states(self, header: Header, blocks: Blocks) -> Answer:
         """Keep the states for later evaluations."""
@@ -276,7 +279,7 @@ class Session:
 def _asked_file(header: Header) -> tuple[str, str]:
     """Read the format and the base of a request about a file."""
     form, base = header["format"], header.get("base", "fixed")
-    if form not in ("urdf", "mjcf") or base not in ("fixed", "free"):
+    if form not in FORMATS or base not in ("fixed", "free"):
         raise ValueError(f"there is no format {form} with base {base}")
     return form, base
 

@@ -179,6 +179,7 @@ class Dart(ReadsFiles, HasLoops, HasScenes):
     name = "dart"
     version = importlib.metadata.version("dartpy")
     build = {"language": "C++ (Python package dartpy)"}
+    formats = ("urdf", "mjcf", "sdf")
     quantities: Quantities = {
         "id": {"inverse_dynamics": TimedCalls("q v a", DartRobot.inverse_dynamics, CoordinateChange.to_neutral_tau)},
         "id_wrench": {"inverse_dynamics": DartRobot.inverse_wrench},

@@ -23,7 +23,7 @@ from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.loaded import loaded
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading, Unsupported
-from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, errors, inertial, note, overheard
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, errors, inertial, moving, note, overheard
 from featherbench_oracles.core.robot import Description
 from featherbench_oracles.dart.building import check_size
 
@@ -47,9 +47,9 @@ EDITED = 1e-9  # relative difference of a link's mass that is reported as an edi
 def read(path: Path, form: str, base: str, make: Callable[[Description, dynamics.Skeleton, Any, Any], Any]) -> Reading:
     """Read a file as `abilities.ReadsFiles` says; `make` takes the description, the skeleton, its moving joints and their bodies."""
     notes: list[Header] = []
-    check_size(sum(1 for _ in elements(path, "link" if form == "urdf" else "body")))
+    check_size(sum(1 for _ in elements(path, "body" if form == "mjcf" else "link")))
     with overheard(path, notes):
-        skeleton = _urdf(path, base) if form == "urdf" else _mjcf(path)
+        skeleton = _urdf(path, base) if form == "urdf" else _world(path, form)
     for heard in notes:
         heard["text"] = DRESS.sub("", heard["text"])
     if skeleton is None and form == "urdf":
@@ -60,10 +60,11 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, dynamics
         said = errors(notes) or (notes[-1]["text"] if notes else "it does not say why")
         raise ValueError(f"DART does not read {path.name}: {said}")
     nodes = skeleton.getBodyNodes()
-    links = bad_values.left_out(path, form, loaded(path, _links(nodes), notes), notes)
+    links = bad_values.left_out(path, form, loaded(_links(nodes), notes, moving(path)), notes)
     description = describe(skeleton.getName() or path.stem, skeleton.getGravity(), links)
     description["frames"] = [frame for frame in description["frames"] if "/" not in frame["name"]]
-    _note(path, nodes, notes)
+    if form != "sdf":
+        _note(path, nodes, notes)
     if form == "urdf":
         joints = [node.getParentJoint() for node in nodes]
         driven = [joint.getName() for joint in joints if joint.getNumDofs() and joint.getActuatorType() == dynamics.ActuatorType.MIMIC]
@@ -99,8 +100,10 @@ def _urdf(path: Path, base: str, bare: bool = False) -> dynamics.Skeleton | None
     return loader.parseSkeletonString(ElementTree.tostring(tree.getroot(), encoding="unicode"), common.Uri(str(path)))
 
 
-def _mjcf(path: Path) -> dynamics.Skeleton | None:
-    """Load the one skeleton that moves. DART makes a skeleton of each body in the world."""
+def _world(path: Path, form: str) -> dynamics.Skeleton | None:
+    """Load the one skeleton that moves. DART makes a skeleton of each body in the world of an MJCF."""
+    if form == "sdf":
+        return utils.SdfParser.readSkeleton(common.Uri(str(path)))
     world = utils.MjcfParser.readWorld(common.Uri(str(path)))
     if world is None:
         return None

@@ -282,6 +282,7 @@ class Drake(ReadsFiles, HasLoops, HasRods, HasScenes, HasSceneDerivatives):
     version = importlib.metadata.version("drake")
     build = {"language": "C++ (Python package drake)"}
     rods = RODS
+    formats = ("urdf", "mjcf", "sdf")
     quantities: Quantities = {
         "id": {"inverse_dynamics": TimedCalls("q v a", DrakeRobot.inverse_dynamics, CoordinateChange.to_neutral_tau)},
         "id_wrench": {"inverse_dynamics": DrakeRobot.inverse_wrench},

@@ -26,7 +26,7 @@ from featherbench_oracles.core.edits import Held, edited
 from featherbench_oracles.core.loaded import loaded
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading
-from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, note, overheard, roots
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, moving, note, overheard, roots
 from featherbench_oracles.core.robot import Description
 
 TYPES = {
@@ -54,16 +54,16 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Multibod
         plant.Finalize()
     joints = _ordered(plant)
     names = [plant.GetModelInstanceName(tree.ModelInstanceIndex(i)) for i in range(2, plant.num_model_instances())]
-    links = loaded(path, _links(plant, joints, damping), notes)
+    links = loaded(_links(plant, joints, damping), notes, moving(path))
     named = _chained(links, path) if form == "mjcf" else links
     description = describe(
         next(iter(names), path.stem), plant.gravity_field().gravity_vector(), bad_values.left_out(path, form, named, notes)
     )
     own = {after.name for before, after in zip(links, named, strict=True) if before.name != after.name}  # not links of the file
     description["frames"] = [frame for frame in description["frames"] if frame["name"] not in own]
-    notes.extend(edited(path, partial(_inertial, plant)))
     _note_rotors(plant, notes)
     if form == "urdf":
+        notes.extend(edited(path, partial(_inertial, plant)))
         notes.extend(_mimics(path, plant))
     elif plant.num_constraints():
         notes.append(note("not_compared", None, f"constraints: {plant.num_constraints()}"))

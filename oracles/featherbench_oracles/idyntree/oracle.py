@@ -239,6 +239,7 @@ class IDynTree(ReadsFiles):
     name = "idyntree"
     version = importlib.metadata.version("idyntree")
     build = {"language": "C++ (Python package idyntree)"}
+    formats = ("urdf",)
     quantities: Quantities = {
         "id": {"inverse_dynamics": IDynTreeRobot.inverse},
         "id_wrench": {"inverse_dynamics": IDynTreeRobot.inverse_wrench},

@@ -19,7 +19,7 @@ from featherbench_oracles.core.edits import Held, edited
 from featherbench_oracles.core.loaded import loaded
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading, Unsupported
-from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, overheard, parsed, roots
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, moving, overheard, parsed, roots
 from featherbench_oracles.core.robot import Description
 from featherbench_oracles.idyntree.building import Built, numbers
 
@@ -28,8 +28,6 @@ GRAVITY = np.array([0.0, 0.0, -9.81])  # of states that give none: iDynTree's mo
 
 def read(path: Path, form: str, base: str, make: Callable[[Description, Built], Any]) -> Reading:
     """Read a file as `abilities.ReadsFiles` says; `make` takes the description and what was built."""
-    if form != "urdf":
-        raise Unsupported("iDynTree reads URDF")
     notes: list[Header] = []
     loader = idt.ModelLoader()
     with overheard(path, notes):
@@ -41,7 +39,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Built], 
     root = model.getDefaultBaseLink()
     order = _order(model, root)
     stands = _stands(model, path) if base == "fixed" else Place()
-    links = loaded(path, _links(model, order, base, stands), notes)
+    links = loaded(_links(model, order, base, stands), notes, moving(path))
     description = describe(parsed(path).get("name") or path.stem, GRAVITY, bad_values.left_out(path, form, links, notes))
     notes.extend(edited(path, lambda name: _inertial(model, name)))
     notes.extend(mimics.tell(path, {}, "", "a joint of its own"))

@@ -287,6 +287,7 @@ class Mujoco(ReadsFiles, HasVariants, HasContactSteps, HasLoops, HasRods, HasSce
     version = mj.mj_versionString()
     build = {"language": "C (Python package mujoco)"}
     rods = RODS
+    formats = ("urdf", "mjcf")
     quantities: Quantities = {
         "id": {"inverse": MujocoRobot.inverse, "rne": MujocoRobot.rne},
         "id_wrench": {"inverse": MujocoRobot.inverse_wrench},

@@ -36,6 +36,7 @@ from featherbench_oracles.core.reading import (
     describe,
     inertial,
     listed,
+    moving,
     note,
     overheard,
     turned,
@@ -74,7 +75,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
     if form == "urdf":
         notes.extend(mimics.tell(path, _mimics(model), "a joint of its own with an equality constraint", "a joint of its own"))
     names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
-    links = loaded(path, without_free_armature([_link(spec, model, names, i) for i in range(1, model.nbody)], notes), notes)
+    links = loaded(without_free_armature([_link(spec, model, names, i) for i in range(1, model.nbody)], notes), notes, moving(path))
     gravity = np.zeros(3) if model.opt.disableflags & mj.mjtDisableBit.mjDSBL_GRAVITY else model.opt.gravity
     description = describe(spec.modelname or path.stem, gravity, bad_values.left_out(path, form, links, notes))
     written = None

@@ -125,6 +125,7 @@ class MujocoWarp(ReadsFiles):
         "packages": f"warp-lang {wp.__version__}, mujoco {mj.mj_versionString()}",
         "precision": "single",
     }
+    formats = ("urdf", "mjcf")
     quantities: Quantities = {
         "id": {"inverse": WarpRobot.inverse_single},
         "bias": {"qfrc_bias": WarpRobot.bias_single},

@@ -59,15 +59,15 @@ def quaternion(matrix: Array) -> Array:
     return np.array(row / np.linalg.norm(row))
 
 
-def change_of_velocities(robot: Description, q: Array, v: Array) -> CoordinateChange:
-    """Find T and b of the table, by the interface in `change`."""
+def change_of_velocities(robot: Description, q: Array, v: Array, com: Array) -> CoordinateChange:
+    """Find T and b of the table, by the interface in `change`; c is the centre of mass of the root as Newton holds it."""
     blocks, bias = [], np.zeros(robot.nv)
     for body in robot.bodies:
         joint = body.joint
         if joint.type == "spherical":
             blocks.append((joint.v, rotation(q[joint.q])))
         if joint.type == "free":
-            r, c = joint.rotation @ rotation(q[joint.q][3:]), body.com
+            r, c = joint.rotation @ rotation(q[joint.q][3:]), com
             linear, angular = v[joint.v][:3], v[joint.v][3:]
             blocks.append((joint.v, np.block([[r, -r @ skew(c)], [np.zeros((3, 3)), r]])))
             bias[joint.v] = np.append(r @ np.cross(angular, linear + np.cross(angular, c)), np.zeros(3))

@@ -260,6 +260,7 @@ class Pinocchio(ReadsFiles, HasContactSolvers, HasLoops):
     name = "pinocchio"
     version = pin.__version__
     build = {"language": "C++ (Python package pin)", "simd": eigenpy.SimdInstructionSetsInUse(), "eigenpy": eigenpy.__version__}
+    formats = ("urdf", "mjcf")
     quantities: Quantities = {
         "id": {"rnea": PinocchioRobot.rnea},
         "id_wrench": {"rnea": PinocchioRobot.rnea_wrench},

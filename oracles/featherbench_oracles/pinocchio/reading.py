@@ -21,7 +21,7 @@ from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.loaded import loaded, sound
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading, Unsupported
-from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, note, overheard, without_free_armature
+from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, elements, moving, note, overheard, without_free_armature
 from featherbench_oracles.core.robot import Description
 
 WORKSPACE = 15e3  # bytes of Pinocchio's Data per degree of freedom squared (1.4 GB at 300); without it the process may end
@@ -46,7 +46,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Mode
     carried = _carried_frames(model)
     bodies = list(elements(path, "body"))
     links = without_free_armature([_link(model, i, bodies, carried) for i in range(1, model.njoints)], notes)
-    links = bad_values.left_out(path, form, loaded(path, links, notes), notes)
+    links = bad_values.left_out(path, form, loaded(links, notes, moving(path)), notes)
     description = describe(model.name or path.stem, model.gravity.linear, links)
     _add_frames(description, model, carried, notes)
     if form == "urdf":

@@ -194,10 +194,13 @@ with a row that says so, and counts as a difference with --strict only.
 
 Exit codes: 0 the engines read the files alike, 1 the physics differ, 2 a file cannot be compared (the others are), 3 an engine is missing.")]
 pub struct CompareArgs {
-    /// Robots: URDF or MJCF files.
+    /// Robots: URDF, MJCF, SDF or USD files. A second file of the first one's robot is compared with the first.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
-    /// Give each URDF's base six degrees of freedom (an MJCF says itself what floats).
+    /// All files hold one robot, whatever its parts are called: compare each with the first.
+    #[arg(long)]
+    pub one: bool,
+    /// Give each URDF's base six degrees of freedom (other files say themselves what floats).
     #[arg(long)]
     pub floating: bool,
     /// The engines that are asked.
@@ -321,6 +324,8 @@ pub enum Format {
     Urdf,
     /// MuJoCo's format.
     Mjcf,
+    /// USD as text, with its physics schemas.
+    Usd,
 }
 
 #[derive(Debug, Clone, Args)]

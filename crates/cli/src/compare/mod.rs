@@ -2,11 +2,13 @@
 
 pub mod compared;
 pub mod forms;
+pub mod other_file;
 pub mod outcome;
 pub mod table;
 pub mod timeout;
 
 use crate::args::CompareArgs;
+use crate::compare::other_file::OtherFile;
 use crate::compare::timeout::Patient;
 use crate::fail::Fail;
 use crate::message::{say, tell};
@@ -25,6 +27,7 @@ use featherbench_comparison::import::{answers, overflow, singular};
 use featherbench_comparison::{Agreement, Import};
 use featherbench_engines::Limits;
 use featherbench_report::numbers::count;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::{Duration, Instant, SystemTime};
 
@@ -41,14 +44,13 @@ const LARGE: usize = 500;
 pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let start = Instant::now();
     let described = oracles::described(root)?;
-    let engines = engines(root, args, &described)?;
-    let compiler = described.compiler(FileFormat::Mjcf).map_or("", |engine| engine.name.as_str());
     // Bad files are told before anything is installed or started, and the others are compared.
     let mut bad: Vec<Fail> = Vec::new();
     let files: Vec<Source> = args.files.iter().filter_map(|path| kept(Source::open(path, args.floating), &mut bad)).collect();
     if files.is_empty() {
         return Err(ended(&bad));
     }
+    let engines = engines(root, args, &described, &files)?;
     let gates = root.read_gates()?;
     let hash = hashes(&files);
     let mut robots: Vec<Robot> = Vec::new();
@@ -70,7 +72,8 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     for file in files {
         let read = match file {
             Source::Unread(file) => {
-                compiled(file, opened.engines.iter().find(|engine| engine.identity().name == compiler).map(AsRef::as_ref))
+                let reference = file.format.reference();
+                compiled(file, opened.engines.iter().find(|engine| engine.identity().name == reference).map(AsRef::as_ref))
             }
             Source::Read(read) => Ok(*read),
         };
@@ -87,6 +90,11 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     if robots.is_empty() {
         return Err(ended(&bad));
     }
+    let others = other_files(&robots, args.one);
+    let pairs: Vec<(String, String)> = others.iter().map(|other| (other.identity().name.clone(), other.of.clone())).collect();
+    opened.engines.extend(others.into_iter().map(|other| Box::new(other) as Box<dyn Engine>));
+    // Another file is asked about the robot of the first alone, and the robot of another file is compared once.
+    let asked = |engine: &str, robot: &str| pairs.iter().all(|(other, of)| other != engine || of == robot);
 
     let started = SystemTime::now();
     let about = About { suite: NAME, hash: &hash, seed: SEED, live: true, robots: &robots };
@@ -99,10 +107,15 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let shown = ["readback", "id", "bias", "mass_matrix_probe"];
     let keep = |cell: &Cell| {
         let large = robots.iter().any(|robot| robot.name == cell.robot && robot.states.nv > LARGE);
-        cell.study != "agreement" || !large || shown.contains(&cell.quantity.as_str())
+        let another = pairs.iter().any(|(other, _)| *other == cell.engine);
+        let shown = !large || shown.contains(&cell.quantity.as_str());
+        asked(&cell.engine, &cell.robot) && (cell.study != "agreement" || shown && !another)
     };
     let records = run.conduct(&[Box::new(Import), Box::new(Agreement)], &context, &keep, &Bar::new())?;
-    let conditions = |robot| outcome::conditions(robot, &opened.engines, &records, args.strict);
+    let of_robot = |robot: &Robot| -> Vec<&dyn Engine> {
+        opened.engines.iter().map(AsRef::as_ref).filter(|engine| asked(&engine.identity().name, &robot.name)).collect()
+    };
+    let conditions = |robot| outcome::conditions(robot, &of_robot(robot), &records, args.strict);
     run.info.expected = robots.iter().flat_map(conditions).collect();
     run.info.drawings = run::drawings(&run.info, &records, &robots);
     run.info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
@@ -123,7 +136,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     } else {
         message::text(&table::answers(&answers(&records)));
         for (robot, (_, remarks)) in robots.iter().zip(&remarks) {
-            message::text(&table::of(robot, remarks, &opened.engines, &records, args.explain));
+            message::text(&table::of(robot, remarks, &of_robot(robot), &records, args.explain));
         }
         if args.annotations {
             message::text(&forms::annotations(&found));
@@ -141,6 +154,13 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     } else {
         Err(Fail::Gate(format!("the engines differ: {} of {} questions have the answer no", unmet.len(), info.expected.len())))
     }
+}
+
+/// The files that hold the first one's robot once more: all of them if `one`, else the second of two if its robot looks like the first one's.
+fn other_files(robots: &[Robot], one: bool) -> Vec<OtherFile> {
+    let Some((first, rest)) = robots.split_first() else { return Vec::new() };
+    let alike = |other: &&Robot| one || rest.len() == 1 && other_file::are_one(&first.description, &other.description);
+    rest.iter().filter(alike).filter_map(|other| OtherFile::new(first, other)).collect()
 }
 
 /// The good ones; what is wrong with a file is told at once and kept for the end.
@@ -165,7 +185,7 @@ type Read = (Robot, Vec<String>);
 
 /// A robot on its way to being compared.
 enum Source {
-    /// Its reference reading needs MuJoCo.
+    /// Its reference reading is an engine's.
     Unread(RobotFile),
     /// Our own reading of a URDF needs no engine.
     Read(Box<Read>),
@@ -179,9 +199,16 @@ impl Source {
                 let base = if floating { FileBase::Free } else { FileBase::Fixed };
                 Self::Read(Box::new(read(RobotSource::urdf(&content, base)?)?))
             }
-            // An MJCF says itself what floats.
-            FileFormat::Mjcf => Self::Unread(content.file(FileBase::Fixed)?),
+            // The others say themselves what floats.
+            FileFormat::Mjcf | FileFormat::Sdf | FileFormat::Usd => Self::Unread(content.file(FileBase::Fixed)?),
         })
+    }
+
+    fn format(&self) -> FileFormat {
+        match self {
+            Self::Unread(file) => file.format,
+            Self::Read(_) => FileFormat::Urdf,
+        }
     }
 
     fn hash(&self) -> &str {
@@ -192,18 +219,27 @@ impl Source {
     }
 }
 
-/// The engines that are asked: those that read files. By default those are left out that have an environment of their own which is not there.
-fn engines(root: &Root, args: &CompareArgs, described: &Engines) -> Result<Vec<String>, Fail> {
+/// The engines that are asked. By default they are those that read one of the formats. Of those that have an environment of their own, one is
+/// left out that is not there, if another one reads the format as well as the reference.
+fn engines(root: &Root, args: &CompareArgs, described: &Engines, files: &[Source]) -> Result<Vec<String>, Fail> {
     let readers = described.names(|engine| !engine.reads.is_empty());
-    let at_hand = |engine: &&DescribedEngine| !engine.reads.is_empty() && oracles::is_at_hand(root, engine, described);
-    let all = || described.iter().filter(at_hand).map(|engine| engine.name.clone()).collect();
-    let engines = args.engines.clone().unwrap_or_else(all);
-    match engines.iter().find(|name| !readers.contains(&name.as_str())) {
+    let Some(named) = &args.engines else {
+        let formats: BTreeSet<FileFormat> = files.iter().map(Source::format).collect();
+        let asked = |engine: &&DescribedEngine| {
+            formats.iter().any(|format| {
+                let others = || described.iter().filter(|other| other.reads.contains(format) && other.name != format.reference());
+                let at_hand = |other: &DescribedEngine| oracles::is_at_hand(root, other, described);
+                engine.name == format.reference() || engine.reads.contains(format) && (at_hand(engine) || !others().any(at_hand))
+            })
+        };
+        return Ok(described.iter().filter(asked).map(|engine| engine.name.clone()).collect());
+    };
+    match named.iter().find(|name| !readers.contains(&name.as_str())) {
         Some(unknown) => {
             let near = featherbench_bench::did_you_mean(unknown, readers.iter().copied());
             Err(Fail::input(format!("--engines: there is no '{unknown}'{near}; choose from {}", readers.join(", "))))
         }
-        None => Ok(engines),
+        None => Ok(named.clone()),
     }
 }
 
@@ -211,13 +247,13 @@ fn hashes(files: &[Source]) -> String {
     hash::of_parts(&files.iter().map(|file| file.hash().as_bytes()).collect::<Vec<_>>())
 }
 
-/// The reference reading of an MJCF file.
-fn compiled(file: RobotFile, compiler: Option<&dyn Engine>) -> Result<Read, Fail> {
-    let compiler = compiler.ok_or_else(|| {
-        let path = file.path.display();
-        Fail::input(format!("{path}: MuJoCo's compiler is the reference of MJCF files; do not leave it out of --engines"))
+/// The reference reading of a file that is no URDF.
+fn compiled(file: RobotFile, reference: Option<&dyn Engine>) -> Result<Read, Fail> {
+    let reference = reference.ok_or_else(|| {
+        let (path, format) = (file.path.display(), file.format);
+        Fail::input(format!("{path}: {} is the reference of {} files; do not leave it out of --engines", format.reference(), format.name()))
     })?;
-    read(RobotSource::mjcf(file, compiler)?)
+    read(RobotSource::compiled(file, reference)?)
 }
 
 /// A robot at its states, with the remarks on its file.

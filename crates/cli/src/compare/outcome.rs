@@ -2,11 +2,11 @@
 
 use ::featherbench_results::{Culprit, Expectation, GateKind, Row, Verdict};
 use featherbench_bench::{Engine, OWN, Robot, measure::worst};
-use featherbench_comparison::import::bound;
+use featherbench_comparison::import::{Precision, bound};
 use serde_json::Value;
 
 /// The questions of all engines about a robot; `strict` counts what is only not read, and rounding, as well.
-pub fn conditions(robot: &Robot, engines: &[Box<dyn Engine>], records: &[Row], strict: bool) -> Vec<Expectation> {
+pub fn conditions(robot: &Robot, engines: &[&dyn Engine], records: &[Row], strict: bool) -> Vec<Expectation> {
     let engines = engines.iter().map(|engine| engine.identity().name.as_str()).filter(|name| *name != OWN);
     engines.flat_map(|engine| of_engine(robot, engine, records, strict)).collect()
 }
@@ -16,7 +16,7 @@ fn of_engine(robot: &Robot, engine: &str, records: &[Row], strict: bool) -> Vec<
     let rows: Vec<&Row> = records.iter().filter(|row| row.robot == *name && row.engine == engine).collect();
     let of = |metric: &str| rows.iter().find(|row| row.study == "import" && row.metric == metric);
     let read = of("differences");
-    let bound = bound(robot.depth);
+    let bound = bound(robot.depth, rows.first().map_or(Precision::Double, |row| Precision::of(&row.precision)));
     let condition = |what: String, found: u64, reason: String| {
         let culprit = Culprit { study: "import".into(), robot: name.clone(), ..Culprit::engine(engine) };
         Expectation::new(GateKind::Import, what, 0, found).because(reason).about(culprit)

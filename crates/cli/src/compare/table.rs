@@ -31,10 +31,10 @@ pub fn answers(answers: &[Answer]) -> String {
 }
 
 /// What each engine makes of a robot, as text.
-pub fn of(robot: &Robot, remarks: &[String], engines: &[Box<dyn Engine>], records: &[Row], explain: bool) -> String {
+pub fn of(robot: &Robot, remarks: &[String], engines: &[&dyn Engine], records: &[Row], explain: bool) -> String {
     let states = &robot.states;
     let reference = records.iter().find(|row| row.study == "import" && row.robot == robot.name).map_or(OWN, |row| &row.reference);
-    let reference = if reference == OWN { "featherbench's own reading" } else { "the reading of MuJoCo's compiler" };
+    let reference = if reference == OWN { "featherbench's own reading".to_owned() } else { format!("the reading of {reference}") };
     let mut text = format!("\n{} ({}, {} bodies, {} dofs), against {reference}\n", robot.name, robot.base(), states.bodies, states.nv);
     text += &unread(robot, engines, records);
     for remark in remarks {
@@ -67,7 +67,7 @@ fn refuted(rows: &[&Row]) -> String {
 
 /// The engines that reject the file as it is written, and what was repaired to go on. It is told first: an engine that imports the file as
 /// written is not the one at fault.
-fn unread(robot: &Robot, engines: &[Box<dyn Engine>], records: &[Row]) -> String {
+fn unread(robot: &Robot, engines: &[&dyn Engine], records: &[Row]) -> String {
     let mut text = String::new();
     for name in engines.iter().map(|engine| &engine.identity().name) {
         let read = records.iter().find(|row| row.robot == robot.name && row.engine == *name && row.metric == "differences");

@@ -1,7 +1,7 @@
 //! An engine that is asked about a robot no more once it has not answered in time. What did not come within the limit is a stated outcome,
 //! and the other engines go on.
 
-use featherbench_bench::{Engine, Evaluation, FileFormat, Identity, Import, ImportVariant, NoAnswer, Quantity, Robot, RobotFile};
+use featherbench_bench::{Engine, Evaluation, Identity, Import, ImportVariant, NoAnswer, Quantity, Robot, RobotFile};
 use featherbench_robots::StateBatch;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -58,8 +58,7 @@ impl Engine for Patient {
 
     fn read(&self, file: &RobotFile) -> Result<Import, NoAnswer> {
         self.admit(Some(file))?;
-        let kind = if file.format == FileFormat::Urdf { "URDF" } else { "MJCF" };
-        self.judged(Some(file), &format!("reading the {kind}"), self.engine.read(file))
+        self.judged(Some(file), &format!("reading the {}", file.format.name().to_uppercase()), self.engine.read(file))
     }
 
     fn variants(&self, file: &RobotFile) -> Result<Vec<ImportVariant>, NoAnswer> {

@@ -24,7 +24,7 @@ pub fn generate(root: &Root, args: &GenArgs) -> Result<(), Fail> {
             notes.iter().for_each(|note| tell!("note: {}: {note}", file.display()));
             description
         }
-        (Some(file), "mjcf") => compiled(root, &FileContent::recognised(file)?, args.floating)?,
+        (Some(file), "mjcf" | "sdf" | "usd") => compiled(root, &FileContent::recognised(file)?, args.floating)?,
         (Some(file), "neutral") => robots::read_model(file)?,
         (_, spec) if spec.contains(':') => {
             let generated = Family::parse(spec).and_then(|family| family.generate());
@@ -83,20 +83,25 @@ pub fn write(description: &Description, path: Option<&Path>) -> Result<(), Neutr
     }
 }
 
-/// What MuJoCo's compiler makes of an MJCF file, with its notes. A bad file is told before any engine is started.
+/// What the reference engine of a format makes of a file, with its notes. A bad file is told before any engine is started.
 pub fn compiled(root: &Root, content: &FileContent, floating: bool) -> Result<Description, Fail> {
-    let path = &content.path;
+    let (path, form) = (&content.path, content.format.name().to_uppercase());
     if content.format == FileFormat::Urdf {
         return Err(Fail::input(format!("{}: this is a URDF; read it by `featherbench gen urdf --file …`", path.display())));
     }
     if floating {
-        return Err(Fail::input("--floating: an MJCF says itself what floats; give its root body a <freejoint/>".into()));
+        let advice = if content.format == FileFormat::Mjcf { "; give its root body a <freejoint/>" } else { "" };
+        return Err(Fail::input(format!("--floating: {form} says itself what floats{advice}")));
     }
-    oracles::python(root).ok_or_else(|| Fail::Missing {
-        message: format!("{}: MuJoCo's compiler reads MJCF files, and it is not installed", path.display()),
-        advice: "install the reference engines by `featherbench oracles install`".into(),
-    })?;
-    let source = RobotSource::mjcf(content.file(FileBase::Fixed)?, &robots::compiler(root)?)?;
+    let described = oracles::described(root)?;
+    let engine = described.get(content.format.reference()).map_err(Fail::input)?;
+    if engine.is_python() {
+        oracles::python(root).ok_or_else(|| Fail::Missing {
+            message: format!("{}: {} reads {form} files, and it is not installed", path.display(), engine.title),
+            advice: "install the reference engines by `featherbench oracles install`".into(),
+        })?;
+    }
+    let source = RobotSource::compiled(content.file(FileBase::Fixed)?, &robots::reference(root, content.format)?)?;
     source.notes.iter().for_each(|note| tell!("note: {}: {note}", path.display()));
     if !source.keyframes.is_empty() {
         let count = source.keyframes.len();
@@ -105,7 +110,7 @@ pub fn compiled(root: &Root, content: &FileContent, floating: bool) -> Result<De
     Ok(source.description)
 }
 
-/// The robot as a URDF or MJCF if one is asked for, with a note on everything that was left out.
+/// The robot as a URDF, MJCF or USD if one is asked for, with a note on everything that was left out.
 fn exported(description: &Description, args: &GenArgs) -> Result<Option<String>, Fail> {
     let by_ending = args.out.as_deref().map_or(Format::Neutral, by_ending);
     written(description, args.format.unwrap_or(by_ending), args.lossy)
@@ -116,6 +121,7 @@ pub fn by_ending(path: &Path) -> Format {
     match path.extension().and_then(|ending| ending.to_str()) {
         Some("urdf") => Format::Urdf,
         Some("xml" | "mjcf") => Format::Mjcf,
+        Some("usda") => Format::Usd,
         _ => Format::Neutral,
     }
 }
@@ -127,6 +133,7 @@ pub fn written(description: &Description, format: Format, lossy: bool) -> Result
         Format::Neutral => return Ok(None),
         Format::Urdf => featherbench_formats::urdf::to_string(description, on_loss),
         Format::Mjcf => featherbench_formats::mjcf::to_string(description, on_loss),
+        Format::Usd => featherbench_formats::usd::to_string(description, on_loss),
     };
     let (text, losses) = exported.map_err(|error| {
         let way_out = if error.can_be_left_out() { "\n(--lossy leaves this out)" } else { "" };

@@ -183,7 +183,7 @@ impl Files<'_> {
         let content = FileContent::read(&folder.join(file), format)?;
         Ok(match format {
             FileFormat::Urdf => RobotSource::urdf(&content, base)?,
-            FileFormat::Mjcf => RobotSource::mjcf(content.file(base)?, self.compiler()?)?,
+            FileFormat::Mjcf | FileFormat::Sdf | FileFormat::Usd => RobotSource::compiled(content.file(base)?, self.compiler()?)?,
         })
     }
 
@@ -193,17 +193,17 @@ impl Files<'_> {
             if oracles::python(self.root).is_none() {
                 oracles::install(self.root)?;
             }
-            self.compiler = Some(compiler(self.root)?);
+            self.compiler = Some(reference(self.root, FileFormat::Mjcf)?);
         }
         self.compiler.as_ref().ok_or_else(|| Fail::input("MuJoCo was not started".into()))
     }
 }
 
-/// MuJoCo, whose compiler is the reference of MJCF files.
-pub fn compiler(root: &Root) -> Result<Oracle, Fail> {
+/// The engine whose import of a format is the reference.
+pub fn reference(root: &Root, format: FileFormat) -> Result<Oracle, Fail> {
     let described = oracles::described(root)?;
-    let engine = described.compiler(FileFormat::Mjcf);
-    let engine = engine.ok_or_else(|| Fail::input("oracles/engines.toml: no engine has compiles = \"mjcf\"".into()))?;
+    let engine = described.get(format.reference()).map_err(Fail::input)?;
+    oracles::install_alone(root, engine, &described)?;
     oracles::start(root, engine, Limits::default())
 }
 

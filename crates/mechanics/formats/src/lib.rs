@@ -1,4 +1,4 @@
-//! File formats of robots: the neutral description file ([`neutral`]), URDF ([`urdf`]) and MJCF ([`mjcf`]).
+//! File formats of robots: the neutral description file ([`neutral`]), URDF ([`urdf`]), MJCF ([`mjcf`]) and USD ([`usd`], written alone).
 //!
 //! Reading never panics, and repairs nothing without a note. An error is typed and names file, line and field. What was left out is a note.
 //! Sizes are limited; nothing recurses on the input.
@@ -12,6 +12,7 @@ mod share;
 mod solid;
 mod text;
 pub mod urdf;
+pub mod usd;
 
 pub use export::{ExportError, Loss, OnLoss, Reason};
 pub use text::{FileError, Place, TextError};

@@ -15,6 +15,7 @@ mod linear;
 mod operators;
 mod order;
 pub mod peak;
+mod principal;
 mod scalar;
 mod transform;
 mod vector;

@@ -172,6 +172,24 @@ proptest! {
         prop_assert!(close(&(s * factors.solve(b)).to_array(), &b.to_array()), "κ below a hundred");
     }
 
+    /// Any symmetric matrix, of any size and as nearly diagonal as numbers can be.
+    #[test]
+    fn principal_axes_give_the_matrix_back(m in [number(), number(), number(), number(), number(), number()], small in -20..1, scale in -100..100) {
+        let off = 10_f64.powi(small);
+        let [xx, xy, xz, yy, yz, zz] = m;
+        let size = 10_f64.powi(scale);
+        let s = Sym3::from_array([xx, off * xy, off * xz, yy, off * yz, zz].map(|x| size * x));
+        let (moments, axes) = s.principal();
+        let [a, b, c] = moments;
+        let back = Sym3::from_array([a, 0.0, 0.0, b, 0.0, c]).rotate(axes).to_array();
+        let largest = s.to_array().iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        // Each of some ten rotations rounds every entry by an ulp of the largest.
+        prop_assert!(s.to_array().iter().zip(back).all(|(x, y)| (x - y).abs() <= 64.0 * f64::EPSILON * largest), "{s:?} {back:?}");
+        let identity = (axes.transpose() * axes).to_array();
+        prop_assert!(identity.iter().zip(Mat3::<f64>::identity().to_array()).all(|(x, y)| (x - y).abs() <= 64.0 * f64::EPSILON));
+        prop_assert!(axes.x.dot(axes.y.cross(axes.z)) > 0.0, "a rotation");
+    }
+
     #[test]
     fn quaternions_turn_at_the_rate_of_the_body(q in [number(), number(), number(), number()], omega in vec3()) {
         let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();

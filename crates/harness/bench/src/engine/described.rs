@@ -31,8 +31,6 @@ pub struct DescribedEngine {
     /// The formats that its own parser reads.
     #[serde(default)]
     pub reads: Vec<FileFormat>,
-    /// The format whose reference reading is this engine's.
-    pub compiles: Option<FileFormat>,
     /// Whether its answers are kept in `datasets/recorded`.
     #[serde(default)]
     pub recorded: bool,
@@ -180,7 +178,6 @@ impl Engines {
 
     /// What no type says.
     fn check(&self) -> Result<(), String> {
-        let mut compiled: Vec<FileFormat> = Vec::new();
         for engine in &self.0 {
             let wrong = |message: String| Err(format!("[{}]: {message}", engine.name));
             if engine.name == crate::OWN {
@@ -207,12 +204,6 @@ impl Engines {
             }
             for lack in &engine.lacks {
                 lack.check().or_else(wrong)?;
-            }
-            if let Some(format) = engine.compiles {
-                if !engine.is_python() || !engine.reads.contains(&format) || compiled.contains(&format) {
-                    return wrong("compiles: one engine in Python can, and it must read the format".into());
-                }
-                compiled.push(format);
             }
         }
         Ok(())
@@ -266,11 +257,6 @@ impl Engines {
     pub fn pins(&self) -> Vec<String> {
         let packages = self.0.iter().filter(|engine| engine.is_python()).filter_map(|engine| engine.package.as_ref());
         packages.map(|package| format!("{}=={}", package.name, package.version)).collect()
-    }
-
-    /// The engine whose reading of a format is the reference.
-    pub fn compiler(&self, format: FileFormat) -> Option<&DescribedEngine> {
-        self.0.iter().find(|engine| engine.compiles == Some(format))
     }
 }
 

@@ -1,6 +1,6 @@
 //! A robot's file: what it is, and what it says before anyone makes a robot of it. Its bytes are read once.
 
-use crate::{HarnessError, hash};
+use crate::{HarnessError, OWN, hash};
 use featherbench_formats::mjcf::{self, Contents};
 use featherbench_formats::urdf::{FileLink, Mimic, Note, Options, Parsed};
 use featherbench_model::Description;
@@ -29,13 +29,17 @@ pub struct RobotFile {
 pub const WATER: f64 = 1000.0;
 
 /// The format of a robot's file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FileFormat {
     /// The Unified Robot Description Format.
     Urdf,
     /// MuJoCo's own format.
     Mjcf,
+    /// The Simulation Description Format, of Gazebo.
+    Sdf,
+    /// Universal Scene Description, with its physics schemas.
+    Usd,
 }
 
 /// The joint of the root link of a file.
@@ -77,6 +81,7 @@ impl FileContent {
                 let contents = mjcf::contents(&self.path, std::str::from_utf8(&self.bytes).unwrap_or_default());
                 self.file_with(base, Vec::new(), features_of_mjcf(&contents))
             }
+            FileFormat::Sdf | FileFormat::Usd => self.file_with(base, Vec::new(), Vec::new()),
         }
     }
 
@@ -137,6 +142,18 @@ impl FileFormat {
         match self {
             Self::Urdf => "urdf",
             Self::Mjcf => "mjcf",
+            Self::Sdf => "sdf",
+            Self::Usd => "usd",
+        }
+    }
+
+    /// The engine whose import of it is the reference; our own of a URDF.
+    pub fn reference(self) -> &'static str {
+        match self {
+            Self::Urdf => OWN,
+            Self::Mjcf => "mujoco",
+            Self::Sdf => "drake",
+            Self::Usd => "openusd",
         }
     }
 }

@@ -26,15 +26,19 @@ impl FileContent {
 fn recognised(path: &Path) -> Result<(FileFormat, Vec<u8>), String> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     if path.is_dir() {
-        return Err("this is a folder; name the robot's URDF or MJCF file in it".into());
+        return Err("this is a folder; name the robot's file in it".into());
     }
     if MESHES.contains(&ending.as_str()) {
-        return Err(format!("a .{ending} file holds a shape and no joints; name the URDF or MJCF file that uses it"));
+        return Err(format!("a .{ending} file holds a shape and no joints; name the robot's file that uses it"));
     }
     // What is no robot's file is not read to its end.
     let mut bytes = Vec::new();
     let mut file = File::open(path).map_err(|error| error.to_string())?;
     file.by_ref().take(HEAD).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    if is_usd(&bytes, &ending) {
+        file.read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+        return Ok((FileFormat::Usd, bytes));
+    }
     if let Some(advice) = no_text(&bytes) {
         return Err(advice);
     }
@@ -43,17 +47,22 @@ fn recognised(path: &Path) -> Result<(FileFormat, Vec<u8>), String> {
     format(&bytes, head, &ending).map(|format| (format, bytes))
 }
 
+/// Whether bytes begin as USD does: as text, in its binary form, or as an archive of that ending.
+fn is_usd(head: &[u8], ending: &str) -> bool {
+    head.starts_with(b"#usda") || head.starts_with(b"PXR-USDC") || ending == "usdz" && head.starts_with(b"PK")
+}
+
 /// Advice about bytes that are no text in UTF-8.
 fn no_text(head: &[u8]) -> Option<String> {
     if head.iter().all(u8::is_ascii_whitespace) {
-        return Some("the file is empty; name a URDF or MJCF file".into());
+        return Some("the file is empty; name a robot's file".into());
     }
     if let Some(encoding) = other_encoding(head) {
         return Some(format!(
             "the file is {encoding}; engines read UTF-8: `iconv -f {encoding} -t UTF-8 FILE > robot.xml`, and let its XML declaration say UTF-8"
         ));
     }
-    let binary = "this is a binary file (a mesh, or a compiled model?); name the URDF or MJCF text that it was made from";
+    let binary = "this is a binary file (a mesh, or a compiled model?); name the robot's file that it was made from";
     head.contains(&0).then(|| binary.into())
 }
 
@@ -81,15 +90,15 @@ fn format(bytes: &[u8], head: usize, ending: &str) -> Result<FileFormat, String>
         Some("robot") => Ok(FileFormat::Urdf),
         Some("mujoco") => Ok(FileFormat::Mjcf),
         Some("mujocoinclude") => Err("this is a part that an MJCF file includes; name the file whose root element is <mujoco>".into()),
-        Some("sdf") => Err("engines do not read SDF alike enough to compare; convert it to URDF or MJCF first".into()),
-        Some(other) => Err(format!("the root element is <{other}>; a URDF begins with <robot>, an MJCF with <mujoco>")),
+        Some("sdf") => Ok(FileFormat::Sdf),
+        Some(other) => Err(format!("the root element is <{other}>; a URDF begins with <robot>, an MJCF with <mujoco>, an SDF with <sdf>")),
         None if text.trim_start().starts_with('{') => {
             Err("this looks like a description file, which no engine reads; put it into datasets/models and name it in a suite".into())
         }
         None if ending == "urdf" || ending == "xml" || ending == "mjcf" => {
-            Err("there is no XML element in it; a URDF begins with <robot>, an MJCF with <mujoco>".into())
+            Err("there is no XML element in it; a URDF begins with <robot>, an MJCF with <mujoco>, an SDF with <sdf>".into())
         }
-        None => Err("this is neither URDF nor MJCF; name an XML file whose root element is <robot> or <mujoco>".into()),
+        None => Err("this is neither URDF, MJCF, SDF nor USD; name a file whose root element is <robot>, <mujoco> or <sdf>, or that begins with #usda".into()),
     }
 }
 

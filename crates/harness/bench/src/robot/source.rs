@@ -61,13 +61,14 @@ impl RobotSource {
         })
     }
 
-    /// The reference reading of an MJCF file: that of MuJoCo's compiler, with the file's own inertias where the compiler refuses those.
+    /// The reference reading of a file that is no URDF: that of [`FileFormat::reference`](crate::FileFormat::reference), with the file's own
+    /// inertias where that engine refuses those.
     ///
     /// # Errors
     /// [`HarnessError::Config`] when the compiler does not read it.
-    pub fn mjcf(file: RobotFile, compiler: &dyn Engine) -> Result<Self, HarnessError> {
+    pub fn compiled(file: RobotFile, compiler: &dyn Engine) -> Result<Self, HarnessError> {
         let bad = |message| HarnessError::Config { path: file.path.clone(), message };
-        let refused = |no_answer: NoAnswer| bad(format!("MuJoCo does not read it: {no_answer}"));
+        let refused = |no_answer: NoAnswer| bad(format!("{} does not read it: {no_answer}", compiler.identity().name));
         let mut reading = compiler.read(&file).map_err(refused)?;
         if let Some(written) = reading.written.take() {
             reading.description = written.canonical().map_err(|error| bad(error.to_string()))?;

@@ -84,6 +84,18 @@ pub enum Reason {
     /// A free joint below another body.
     #[error("a free joint on another body; MuJoCo has them on the world only")]
     FreeBelow,
+    /// A name that USD writes otherwise.
+    #[error("a name that is no identifier, or is there twice; it is written as one")]
+    Identifier,
+    /// USD has no frames.
+    #[error("a frame, which the format has not")]
+    Frame,
+    /// A mass of 0 is none in USD, and so is what stands beside it.
+    #[error("an inertia without a mass; the format takes a mass of 0 for one that is not given")]
+    InertiaAlone,
+    /// A number beyond single precision.
+    #[error("a mass or inertia that single precision does not hold")]
+    BeyondSingle,
     /// The name is empty, contains a control character, or looks like a macro of xacro.
     #[error("a name that is empty, holds a control character or reads as a macro; rename it")]
     BadName,
@@ -109,11 +121,15 @@ impl Reason {
             | Self::Loop { .. }
             | Self::Residual
             | Self::Uncertain
-            | Self::FreePlacement => true,
+            | Self::FreePlacement
+            | Self::Identifier
+            | Self::Frame
+            | Self::InertiaAlone => true,
             Self::JointType { .. }
             | Self::Deforms
             | Self::Massless
             | Self::Unphysical
+            | Self::BeyondSingle
             | Self::FreeBelow
             | Self::BadName
             | Self::RepeatedName

@@ -67,7 +67,7 @@ fn neighbours(q: [f64; 4], step: impl Fn(f64) -> f64) -> impl Iterator<Item = [f
 }
 
 /// A unit quaternion of a rotation, with the component of largest magnitude positive. That one is a square root, the others are quotients.
-fn estimate(r: &[f64; 9]) -> [f64; 4] {
+pub(crate) fn estimate(r: &[f64; 9]) -> [f64; 4] {
     let [xx, yy, zz] = [r[0], r[4], r[8]];
     let squares = [1.0 + xx + yy + zz, 1.0 + xx - yy - zz, 1.0 - xx + yy - zz, 1.0 - xx - yy + zz];
     let (wx, wy, wz) = (r[7] - r[5], r[2] - r[6], r[3] - r[1]);

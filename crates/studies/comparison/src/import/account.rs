@@ -5,7 +5,7 @@
 //! the rounding of the fields. If not, each field is tried alone, as several edits may have changed one body. Otherwise there is no
 //! account.
 
-use super::fields::{self, ROUNDING, differs};
+use super::fields::{self, Precision, differs};
 use super::{Cause, Field};
 use featherbench_bench::{FileInertial, FileLink, ImportNote, WATER};
 use featherbench_model::{BodyDescription, Description, Placement};
@@ -13,8 +13,6 @@ use featherbench_spatial::{Mat3, RigidBodyInertia, Sym3, Transform, Vec3};
 use nalgebra::{Matrix3, SymmetricEigen};
 use std::f64::consts::PI;
 
-/// Rounding of a prediction. Its numbers come from a few more operations than an import result.
-pub(super) const TESTED: f64 = 4.0 * ROUNDING;
 /// The fields that a hypothesis about links predicts.
 pub(super) const OF_MASS: [Field; 3] = [Field::Mass, Field::Com, Field::Inertia];
 /// MuJoCo's bounds of mass and inertia, with which its compiler accepts a file that it refuses without (`BOUND` in
@@ -57,7 +55,14 @@ pub(super) struct Parts<'a> {
 
 impl<'a> Parts<'a> {
     /// The links of body `i`: those that the file names; or those whose numbers in the file the parser's notes give; or the body itself.
-    pub fn new(ours: &'a Description, i: usize, links: &[FileLink], notes: &[&ImportNote], reach: f64) -> Self {
+    pub fn new(
+        ours: &'a Description,
+        i: usize,
+        links: &[FileLink],
+        notes: &[&ImportNote],
+        reach: f64,
+        precision: Precision,
+    ) -> Self {
         let body = &ours.bodies[i];
         let itself = std::iter::once((body.name.as_str(), Transform::identity()));
         let fixed =
@@ -89,7 +94,7 @@ impl<'a> Parts<'a> {
         }
         let sum = parts.iter().map(|part| placed(part, part.given.as_ref())).fold(RigidBodyInertia::zero(), |sum, part| sum + part);
         let own = RigidBodyInertia::from_com(body.mass, Vec3::from_array(body.com), Sym3::from_array(body.inertia));
-        let rounding = TESTED * named.len() as f64;
+        let rounding = precision.tested() * named.len() as f64;
         Self { body, parts, rest: own + negative(sum), rounding, reach }
     }
 

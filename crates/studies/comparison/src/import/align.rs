@@ -9,7 +9,7 @@
 //!
 //! Another frame than its own is used only if it leaves fewer differences.
 
-use super::fields::{ROUNDING, differs, rounding};
+use super::fields::{Precision, differs, rounding};
 use super::{Field, fields};
 use featherbench_model::{BodyDescription, Description, JointType, Placement};
 use featherbench_spatial::{Sym3, Transform, Vec3};
@@ -18,8 +18,14 @@ use featherbench_spatial::{Sym3, Transform, Vec3};
 const GEOMETRIC: [Field; 4] = [Field::Axis, Field::Placement, Field::Com, Field::Inertia];
 
 /// The partners of our bodies, written in our frames; `partner` as [`super::pairs::pairs`] gives it, `reach` the robot's length scale.
-pub(super) fn aligned(ours: &Description, theirs: &Description, partner: &[Option<usize>], reach: f64) -> Vec<Option<BodyDescription>> {
-    let aligner = Aligner { ours, theirs, partner, reach };
+pub(super) fn aligned(
+    ours: &Description,
+    theirs: &Description,
+    partner: &[Option<usize>],
+    reach: f64,
+    precision: Precision,
+) -> Vec<Option<BodyDescription>> {
+    let aligner = Aligner { ours, theirs, partner, reach, precision };
     let mut gauges = vec![Transform::identity(); ours.bodies.len()];
     let mut result = Vec::with_capacity(ours.bodies.len());
     for i in 0..ours.bodies.len() {
@@ -37,6 +43,7 @@ struct Aligner<'a> {
     theirs: &'a Description,
     partner: &'a [Option<usize>],
     reach: f64,
+    precision: Precision,
 }
 
 impl Aligner<'_> {
@@ -53,7 +60,7 @@ impl Aligner<'_> {
         let children = || self.children(i, j).map(|(c, d)| place(&self.ours.bodies[c]).compose(&place(&self.theirs.bodies[d]).inverse()));
         let mut best = (self.cost(i, j, above, &Transform::identity()), Transform::identity());
         for gauge in std::iter::once(self.inherited(i, j, above)).chain(children()) {
-            if best.0 == 0 || !preserves(self.theirs.bodies[j].joint.kind, &gauge, self.reach) {
+            if best.0 == 0 || !preserves(self.theirs.bodies[j].joint.kind, &gauge, self.reach, self.precision) {
                 continue;
             }
             let cost = self.cost(i, j, above, &gauge);
@@ -68,7 +75,7 @@ impl Aligner<'_> {
     fn inherited(&self, i: usize, j: usize, above: &Transform<f64>) -> Transform<f64> {
         let gauge = place(&self.ours.bodies[i]).inverse().compose(&above.compose(&place(&self.theirs.bodies[j])));
         // Rounding is not another frame: it would grow from body to body.
-        if is_identity(&gauge, self.reach) { Transform::identity() } else { gauge }
+        if is_identity(&gauge, self.reach, self.precision) { Transform::identity() } else { gauge }
     }
 
     /// The number of differences of the body with this frame, and of children that would need a frame of their own.
@@ -76,7 +83,7 @@ impl Aligner<'_> {
         let child = |(c, d): (usize, usize)| {
             let own = self.count(c, d, gauge, &Transform::identity());
             let inherited = self.inherited(c, d, gauge);
-            let moved = preserves(self.theirs.bodies[d].joint.kind, &inherited, self.reach);
+            let moved = preserves(self.theirs.bodies[d].joint.kind, &inherited, self.reach, self.precision);
             usize::from(own > 0 && !(moved && self.count(c, d, gauge, &inherited) == 0))
         };
         self.count(i, j, above, gauge) + self.children(i, j).map(child).sum::<usize>()
@@ -84,7 +91,7 @@ impl Aligner<'_> {
 
     fn count(&self, i: usize, j: usize, above: &Transform<f64>, gauge: &Transform<f64>) -> usize {
         let (ours, theirs) = (&self.ours.bodies[i], written(&self.theirs.bodies[j], above, gauge));
-        let rounding = rounding(self.ours, i);
+        let rounding = rounding(self.ours, i, self.precision);
         GEOMETRIC.into_iter().filter(|&field| differs(fields::size(field, ours, &theirs, self.reach), rounding)).count()
     }
 
@@ -95,22 +102,22 @@ impl Aligner<'_> {
 }
 
 /// Whether another frame on the moved body keeps the meaning of the joint's coordinates.
-fn preserves(kind: JointType, gauge: &Transform<f64>, reach: f64) -> bool {
+fn preserves(kind: JointType, gauge: &Transform<f64>, reach: f64, precision: Precision) -> bool {
     match kind {
         JointType::Prismatic { .. } => true,
         // The line of the axis must still go through the origin.
         JointType::Revolute { axis } | JointType::Helical { axis, .. } => {
             let (axis, shift) = (gauge.rotation * Vec3::from_array(axis), gauge.translation);
-            (shift - axis * shift.dot(axis)).norm() <= ROUNDING * reach
+            (shift - axis * shift.dot(axis)).norm() <= precision.rounding() * reach
         }
-        _ => is_identity(gauge, reach),
+        _ => is_identity(gauge, reach, precision),
     }
 }
 
-fn is_identity(gauge: &Transform<f64>, reach: f64) -> bool {
+fn is_identity(gauge: &Transform<f64>, reach: f64, precision: Precision) -> bool {
     let identity = Transform::<f64>::identity().rotation.to_array();
-    let turned = gauge.rotation.to_array().iter().zip(identity).any(|(x, y)| (x - y).abs() > ROUNDING);
-    !turned && gauge.translation.norm() <= ROUNDING * reach
+    let turned = gauge.rotation.to_array().iter().zip(identity).any(|(x, y)| (x - y).abs() > precision.rounding());
+    !turned && gauge.translation.norm() <= precision.rounding() * reach
 }
 
 fn place(body: &BodyDescription) -> Transform<f64> {

@@ -7,7 +7,7 @@
 //! - Which body changed M or τ most?
 //! - What can be done about it?
 
-use super::bound;
+use super::{Precision, bound};
 use featherbench_bench::measure::worst;
 use featherbench_results::{Row, Verdict};
 use serde::Serialize;
@@ -131,7 +131,7 @@ fn answer(read: &Row, rows: &[Row]) -> Answer {
     };
     let unexplained = rows.iter().find(|row| row.metric == "unexplained");
     let gate = unexplained.and_then(|row| params(row)["gate"].as_f64());
-    let bound = gate.unwrap_or_else(|| bound(usize::try_from(read.depth.unwrap_or(0)).unwrap_or(0)));
+    let bound = gate.unwrap_or_else(|| bound(usize::try_from(read.depth.unwrap_or(0)).unwrap_or(0), Precision::of(&read.precision)));
     let error = rows.iter().filter(|row| row.metric == "as_read").filter_map(|row| row.value).reduce(worst);
     let largest = rows.iter().filter(|row| row.metric == "difference").filter_map(|row| largest(row)).reduce(graver);
     let physics = params(read)["physics"].as_u64().unwrap_or(0);

@@ -3,7 +3,7 @@
 use super::account::{Account, OF_MASS, Parts};
 use super::align::aligned;
 use super::cause::cause;
-use super::fields::{self, OF_A_BODY, differs, digits};
+use super::fields::{self, OF_A_BODY, Precision, differs, digits};
 use super::pairs::{chained, pairs};
 use super::{Cause, Difference, Field};
 use featherbench_bench::{FileLink, ImportNote, ImportVariant};
@@ -19,6 +19,8 @@ pub struct Comparison {
     pub ours: Description,
     /// The hypotheses about the whole file that are refuted, each with the number that refutes it.
     pub refuted: Vec<String>,
+    /// What their numbers are rounded to.
+    pub(super) precision: Precision,
 }
 
 /// A difference, and our robot with this difference alone.
@@ -54,8 +56,13 @@ impl Alone {
 impl Comparison {
     /// Compares their import result of a robot with ours. Both must be canonical. `links` are the file's links, as far as they are known.
     pub fn of(ours: &Description, theirs: &Description, links: &[FileLink], notes: &[ImportNote]) -> Self {
+        Self::rounded(ours, theirs, links, notes, Precision::Double)
+    }
+
+    /// The same with an engine's numbers of this precision.
+    pub fn rounded(ours: &Description, theirs: &Description, links: &[FileLink], notes: &[ImportNote], precision: Precision) -> Self {
         let (ours, theirs) = (chained(ours), chained(theirs));
-        let partner = pairs(&ours, &theirs);
+        let partner = pairs(&ours, &theirs, precision);
         let gone: Vec<usize> = (0..ours.bodies.len()).filter(|&i| partner[i].is_none()).collect();
         let extra: Vec<usize> = (0..theirs.bodies.len()).filter(|j| !partner.contains(&Some(*j))).collect();
         let mut findings: Vec<SingleDifference> = extra.iter().map(|&j| added(&theirs.bodies[j])).collect();
@@ -68,12 +75,12 @@ impl Comparison {
             // Nothing is left that could hold a mass.
             let fixed = |i: usize| if framed(&theirs, &ours.bodies[i].name) { Mass::Kept } else { Mass::Dropped };
             findings.splice(0..0, gone.iter().map(|&i| missing(&ours.bodies[i], fixed(i), notes)));
-            return Self { findings, ours, refuted: Vec::new() };
+            return Self { findings, ours, refuted: Vec::new(), precision };
         };
         // A missing body was merged into its parent, or dropped with its mass: the numbers of the other bodies show which.
         let tried = |dropped: &[usize]| {
             let left = without(&ours, &gone, dropped)?;
-            let found = shared(&left, &reduced, &names, links, notes);
+            let found = shared(&left, &reduced, &names, (links, notes), precision);
             let count = found.iter().filter(|finding| finding.difference.field.weight() == super::Weight::Dynamics).count();
             Some((count, dropped.to_vec(), left, found))
         };
@@ -116,7 +123,7 @@ impl Comparison {
         };
         findings.splice(0..0, gone.iter().map(|&i| missing(&ours.bodies[i], fate(i), notes)).collect::<Vec<_>>());
         findings.extend(found);
-        Self { findings, ours: left, refuted: Vec::new() }
+        Self { findings, ours: left, refuted: Vec::new(), precision }
     }
 
     /// The same with what is known of the whole file: what it would be if one thing were read otherwise, and the check after loading.
@@ -217,14 +224,14 @@ fn shared(
     ours: &Description,
     theirs: &Description,
     names: &HashMap<&str, &str>,
-    links: &[FileLink],
-    notes: &[ImportNote],
+    (links, notes): (&[FileLink], &[ImportNote]),
+    precision: Precision,
 ) -> Vec<SingleDifference> {
     let place: HashMap<&str, usize> = theirs.bodies.iter().enumerate().map(|(j, body)| (body.name.as_str(), j)).collect();
     let partner: Vec<Option<usize>> =
         ours.bodies.iter().map(|body| names.get(body.name.as_str()).and_then(|name| place.get(name)).copied()).collect();
     let reach = fields::reach(ours).max(fields::reach(theirs));
-    let written = aligned(ours, theirs, &partner, reach);
+    let written = aligned(ours, theirs, &partner, reach, precision);
     let told = Notes::new(ours, notes);
     let mut findings = Vec::new();
     for (i, body) in ours.bodies.iter().enumerate() {
@@ -236,7 +243,7 @@ fn shared(
             let (a, b) = (name(ours, body.parent), name(theirs, theirs.bodies[j].parent));
             findings.push(whole(&body.name, Field::Parent, a, b, Cause::Number));
         }
-        let rounding = fields::rounding(ours, i);
+        let rounding = fields::rounding(ours, i, precision);
         let different: Vec<(Field, f64)> = OF_A_BODY
             .into_iter()
             .map(|field| (field, fields::size(field, body, aligned, reach)))
@@ -248,17 +255,17 @@ fn shared(
         let about = told.about(i, [body, &theirs.bodies[j]]);
         // One edit of the links may account for all fields; otherwise each field is explained alone.
         let of_mass = different.iter().any(|(field, _)| OF_MASS.contains(field));
-        let parts = of_mass.then(|| Parts::new(ours, i, links, &about, reach));
+        let parts = of_mass.then(|| Parts::new(ours, i, links, &about, reach, precision));
         let whole = parts.as_ref().and_then(|parts| parts.account(aligned, &OF_MASS));
         for (field, size) in different {
             let alone = || parts.as_ref().and_then(|parts| parts.account(aligned, &[field]));
             let account = if OF_MASS.contains(&field) { whole.clone().or_else(alone) } else { None };
-            findings.push(finding(ours, i, aligned, (field, size), account, &about));
+            findings.push(finding(ours, i, aligned, (field, size), account, (&about, precision)));
         }
     }
-    super::context::explain(ours, (theirs, &partner), &written, &mut findings, reach);
+    super::context::explain(ours, (theirs, &partner), &written, &mut findings, reach, precision);
     findings.extend(mimics(ours, notes));
-    findings.extend(gravity(ours, theirs));
+    findings.extend(gravity(ours, theirs, precision));
     findings.extend(order(ours, &partner));
     findings
 }
@@ -269,10 +276,10 @@ fn finding(
     aligned: &BodyDescription,
     (field, size): (Field, f64),
     account: Option<Account>,
-    notes: &[&ImportNote],
+    (notes, precision): (&[&ImportNote], Precision),
 ) -> SingleDifference {
     let body = &ours.bodies[i];
-    let (untested, note) = cause(field, body, aligned, notes);
+    let (untested, note) = cause(field, body, aligned, notes, precision);
     let (cause, account) = account.map_or((untested, None), |account| (account.cause, Some(account.text)));
     let [a, b] = [body, aligned].map(|body| fields::written(field, body, size));
     let difference = Difference { body: body.name.clone(), field, ours: a, theirs: b, size, cause, account, note };
@@ -336,11 +343,11 @@ fn mimics(ours: &Description, notes: &[ImportNote]) -> impl Iterator<Item = Sing
     })
 }
 
-fn gravity(ours: &Description, theirs: &Description) -> Option<SingleDifference> {
+fn gravity(ours: &Description, theirs: &Description, precision: Precision) -> Option<SingleDifference> {
     let far = fields::norm(ours.gravity).max(fields::norm(theirs.gravity));
     let size = featherbench_bench::measure::ratio(fields::distance(ours.gravity, theirs.gravity), far);
     let text = |g: [f64; 3]| format!("({}) m/s²", g.map(|x| digits(x, size)).join(", "));
-    differs(size, fields::ROUNDING).then(|| {
+    differs(size, precision.rounding()).then(|| {
         let mut finding = whole("", Field::Gravity, text(ours.gravity), text(theirs.gravity), Cause::Number);
         finding.difference.size = size;
         finding.alone = Some(Alone::Gravity(theirs.gravity));
@@ -396,7 +403,7 @@ pub(super) fn shared_coordinates(ours: &Description, theirs: &Description) -> Sh
     };
     let shared = |count: fn(JointType) -> usize| {
         let (from, to) = (starts(&ours, count), starts(&theirs, count));
-        let partners = pairs(&ours, &theirs).into_iter().enumerate().filter_map(|(i, j)| Some((i, j?)));
+        let partners = pairs(&ours, &theirs, Precision::Double).into_iter().enumerate().filter_map(|(i, j)| Some((i, j?)));
         let alike = partners.filter(|&(i, j)| {
             let [a, b] = [ours.bodies[i].joint.kind, theirs.bodies[j].joint.kind];
             a.nq() == b.nq() && a.nv() == b.nv()

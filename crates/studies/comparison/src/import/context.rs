@@ -1,7 +1,7 @@
 //! Causes that need more than one number: an edit of a neighbouring body, of its chain, or of the whole robot.
 
 use super::comparison::SingleDifference;
-use super::fields::{self, ROUNDING};
+use super::fields::{self, Precision};
 use super::{Cause, Difference, Field};
 use featherbench_model::{BodyDescription, Description, JointType, Placement};
 use featherbench_spatial::{Sym3, Transform, Vec3};
@@ -14,14 +14,16 @@ pub(super) fn explain(
     written: &[Option<BodyDescription>],
     findings: &mut [SingleDifference],
     reach: f64,
+    precision: Precision,
 ) {
-    planar_axis(ours, theirs, findings, reach);
-    if one_factor(ours, written) {
+    let tested = precision.tested();
+    planar_axis(ours, theirs, findings, reach, tested);
+    if one_factor(ours, written, tested) {
         let whole = |difference: &&mut Difference| matches!(difference.field, Field::Mass | Field::Inertia);
         unexplained(findings).filter(whole).for_each(|difference| difference.cause = Cause::TotalMass);
     }
-    between_joints(ours, written, findings, reach);
-    other_root(ours, written, findings, reach);
+    between_joints(ours, written, findings, reach, tested);
+    other_root(ours, written, findings, reach, tested);
 }
 
 /// Differences without a cause yet.
@@ -31,7 +33,13 @@ fn unexplained(findings: &mut [SingleDifference]) -> impl Iterator<Item = &mut D
 
 /// A planar joint whose plane is z, whatever axis the file gives: the link has the joint's own frame. `chained` writes the joint as two
 /// slides and a rotation, and our parser leaves a frame where the link is in the plane.
-fn planar_axis(ours: &Description, (theirs, partner): (&Description, &[Option<usize>]), findings: &mut [SingleDifference], reach: f64) {
+fn planar_axis(
+    ours: &Description,
+    (theirs, partner): (&Description, &[Option<usize>]),
+    findings: &mut [SingleDifference],
+    reach: f64,
+    tested: f64,
+) {
     for end in 2..ours.bodies.len() {
         let body = &ours.bodies[end];
         let first = end - 2;
@@ -57,7 +65,7 @@ fn planar_axis(ours: &Description, (theirs, partner): (&Description, &[Option<us
         }
         let same = |(i, due, fields): &(usize, BodyDescription, Vec<Field>)| {
             let held = partner[*i].map(|j| &theirs.bodies[j]);
-            held.is_some_and(|held| fields.iter().all(|&field| fields::size(field, due, held, reach) <= 4.0 * ROUNDING))
+            held.is_some_and(|held| fields.iter().all(|&field| fields::size(field, due, held, reach) <= tested))
         };
         if due.iter().all(same) {
             let names: Vec<&str> = (first..=end).chain(due.iter().map(|(i, ..)| *i)).map(|i| ours.bodies[i].name.as_str()).collect();
@@ -74,17 +82,23 @@ fn planar_axis(ours: &Description, (theirs, partner): (&Description, &[Option<us
 }
 
 /// Whether all masses of the robot are ours times one factor other than one.
-fn one_factor(ours: &Description, written: &[Option<BodyDescription>]) -> bool {
+fn one_factor(ours: &Description, written: &[Option<BodyDescription>], tested: f64) -> bool {
     let pairs =
         || ours.bodies.iter().zip(written).filter_map(|(body, theirs)| Some((body, theirs.as_ref()?))).filter(|(body, _)| body.mass > 0.0);
     let Some(factor) = pairs().map(|(body, theirs)| theirs.mass / body.mass).next() else { return false };
-    let same = |a: f64, b: f64, size: f64| (a - b).abs() <= 4.0 * ROUNDING * size;
+    let same = |a: f64, b: f64, size: f64| (a - b).abs() <= tested * size;
     let scaled = |(body, theirs): (&BodyDescription, &BodyDescription)| same(theirs.mass, factor * body.mass, theirs.mass);
-    pairs().count() > 1 && (factor - 1.0).abs() > 4.0 * ROUNDING && factor > 0.0 && pairs().all(scaled)
+    pairs().count() > 1 && (factor - 1.0).abs() > tested && factor > 0.0 && pairs().all(scaled)
 }
 
 /// A floating base whose coordinates are those of another link: one that is fixed to our root, if the parser drops an empty root.
-fn other_root(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [SingleDifference], reach: f64) {
+fn other_root(
+    ours: &Description,
+    written: &[Option<BodyDescription>],
+    findings: &mut [SingleDifference],
+    reach: f64,
+    tested: f64,
+) {
     for (root, theirs) in written.iter().enumerate() {
         let Some(theirs) = theirs.as_ref().filter(|theirs| theirs.joint.kind == JointType::Free) else { continue };
         let Some(frame) = ours.frames.iter().find(|frame| frame.body == Some(root) && frame.name == theirs.name) else { continue };
@@ -94,7 +108,7 @@ fn other_root(ours: &Description, written: &[Option<BodyDescription>], findings:
             let behind = Placement::from_transform(&from_root.compose(&theirs.joint.placement.to_transform()));
             let moved =
                 BodyDescription { joint: featherbench_model::JointDescription { placement: behind, ..body.joint.clone() }, ..body.clone() };
-            let same = fields::size(Field::Placement, body, &moved, reach) <= 4.0 * ROUNDING;
+            let same = fields::size(Field::Placement, body, &moved, reach) <= tested;
             let of_child = |difference: &&mut Difference| difference.field == Field::Placement && difference.body == body.name;
             unexplained(findings)
                 .filter(|difference| same && of_child(difference))
@@ -105,7 +119,13 @@ fn other_root(ours: &Description, written: &[Option<BodyDescription>], findings:
 
 /// The joints of one link are a chain of massless bodies before it. If the whole chain leads to the same place and its parts do not, the
 /// link's pose was put at another joint of the chain.
-fn between_joints(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [SingleDifference], reach: f64) {
+fn between_joints(
+    ours: &Description,
+    written: &[Option<BodyDescription>],
+    findings: &mut [SingleDifference],
+    reach: f64,
+    tested: f64,
+) {
     for end in 0..ours.bodies.len() {
         let mut chain = vec![end];
         while let Some(parent) = ours.bodies[chain[chain.len() - 1]].parent.filter(|&parent| ours.bodies[parent].mass == 0.0) {
@@ -117,8 +137,8 @@ fn between_joints(ours: &Description, written: &[Option<BodyDescription>], findi
             bodies.fold(Transform::identity(), |behind, body: &BodyDescription| body.joint.placement.to_transform().compose(&behind))
         };
         let (a, b) = (through(&mut chain.iter().map(|&i| &ours.bodies[i])), through(&mut theirs.into_iter()));
-        let turned = a.rotation.to_array().iter().zip(b.rotation.to_array()).any(|(x, y)| (x - y).abs() > 4.0 * ROUNDING);
-        if turned || fields::norm((a.translation - b.translation).to_array()) > 4.0 * ROUNDING * reach {
+        let turned = a.rotation.to_array().iter().zip(b.rotation.to_array()).any(|(x, y)| (x - y).abs() > tested);
+        if turned || fields::norm((a.translation - b.translation).to_array()) > tested * reach {
             continue;
         }
         let of_chain = |difference: &&mut Difference| {

@@ -1,5 +1,7 @@
 //! A difference between two import results of one robot: its place, its field, its size, and its cause.
 
+use super::fields::Precision;
+
 /// One difference between our import result of a robot and another one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
@@ -227,10 +229,11 @@ impl Class {
     pub const ULPS: f64 = 1024.0 * f64::EPSILON;
 
     /// The class of a difference of a size. `effect` is the larger change of M and inverse dynamics by it alone, if that can be computed.
-    /// `bound` is the change that rounding may cause.
-    pub fn of(field: Field, size: f64, effect: Option<f64>, bound: f64) -> Self {
+    /// [`bound`](super::bound) is the change that rounding may cause.
+    pub fn of(field: Field, size: f64, effect: Option<f64>, depth: usize, precision: Precision) -> Self {
+        let (bound, ulps) = (super::bound(depth, precision), precision.factor() * Self::ULPS);
         match (field.weight(), effect) {
-            (Weight::Dynamics, Some(effect)) if effect <= bound && size <= Self::ULPS => Self::Rounding,
+            (Weight::Dynamics, Some(effect)) if effect <= bound && size <= ulps => Self::Rounding,
             (Weight::Dynamics, Some(effect)) if effect <= bound && matches!(field, Field::Placement | Field::Axis) => Self::Pose,
             (Weight::Dynamics, Some(effect)) if effect <= bound => Self::Unfelt,
             (Weight::Dynamics, _) => Self::Physics,

@@ -9,6 +9,43 @@ use featherbench_spatial::{Mat3, Vec3};
 /// quaternions and those into matrices, and diagonalise inertias; each rounds about ten times. An edit by a parser is larger by many
 /// decades.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// The unit of rounding in single precision over that in double.
+const SINGLE: f64 = (f32::EPSILON as f64) / f64::EPSILON;
+
+/// What the numbers of an engine are rounded to.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum Precision {
+    /// Numbers of 64 bits.
+    #[default]
+    Double,
+    /// Numbers of 32 bits.
+    Single,
+}
+
+impl Precision {
+    /// That of a row: `f32`, or another.
+    pub fn of(scalar: &str) -> Self {
+        if scalar == "f32" { Self::Single } else { Self::Double }
+    }
+
+    /// How much larger rounding is than in double.
+    pub(super) fn factor(self) -> f64 {
+        match self {
+            Self::Double => 1.0,
+            Self::Single => SINGLE,
+        }
+    }
+
+    /// The largest distance that rounding may cause: [`ROUNDING`], or that in single precision.
+    pub(super) fn rounding(self) -> f64 {
+        ROUNDING * self.factor()
+    }
+
+    /// Rounding of a prediction. Its numbers come from a few more operations than an import result.
+    pub(super) fn tested(self) -> f64 {
+        4.0 * self.rounding()
+    }
+}
 
 /// The fields of a body, in the order of reports.
 pub(super) const OF_A_BODY: [Field; 11] = [
@@ -26,9 +63,9 @@ pub(super) const OF_A_BODY: [Field; 11] = [
 ];
 
 /// The rounding of a body: each link that is fixed to it is rotated, shifted, added and diagonalised once more.
-pub(super) fn rounding(description: &Description, body: usize) -> f64 {
+pub(super) fn rounding(description: &Description, body: usize, precision: Precision) -> f64 {
     let fixed = description.frames.iter().filter(|frame| frame.body == Some(body)).count();
-    (1 + fixed) as f64 * ROUNDING
+    (1 + fixed) as f64 * precision.rounding()
 }
 
 /// Whether a size is more than rounding. A NaN differs.

@@ -2,7 +2,7 @@
 //!
 //! Every engine imports the file by its own parser and returns its robot ([`featherbench_bench::Engine::read`]). That description is
 //! compared body by body with the reference import, whatever frames it is written in ([`Comparison`]). The reference is our import of URDF,
-//! and that of MuJoCo's compiler of MJCF.
+//! and that of [`FileFormat::reference`](featherbench_bench::FileFormat::reference) of other formats.
 //!
 //! A replay then tests whether all differences were found. The engine computes with the robot that it has imported, our kernels with the
 //! robot that it reports. If both agree, the description explains the engine's answers completely. If not, the row `unexplained` counts the
@@ -31,6 +31,7 @@ pub(crate) mod words;
 
 pub use answers::{Answer, Largest, Loads, answers, repairs};
 pub use comparison::{Alone, Comparison, SingleDifference};
+pub use fields::Precision;
 pub use difference::{Cause, Class, Difference, Field, Weight};
 pub use overflow::overflow;
 pub use replay::Effect;
@@ -94,7 +95,7 @@ impl Study for Import {
                 cells.extend(computed.filter_map(usual).map(|(quantity, method)| cell(engine, quantity, method)));
             }
             // The last one, as it asks whether the others differ.
-            let compiler = context.engine(reference(file.format)).filter(|_| file.format == FileFormat::Mjcf);
+            let compiler = context.engine(file.format.reference()).filter(|_| file.format == FileFormat::Mjcf);
             cells.extend(compiler.map(|engine| cell(engine, VARIANTS, PARSER.into())));
         }
         cells
@@ -114,14 +115,6 @@ impl Study for Import {
 fn params(robot: &Robot) -> Option<Value> {
     let file = robot.file.as_ref()?;
     Some(json!({"base": file.base.name(), "format": file.format.name(), "states": robot.states.count()}))
-}
-
-/// The engine whose import is the reference of a file.
-fn reference(format: FileFormat) -> &'static str {
-    match format {
-        FileFormat::Urdf => OWN,
-        FileFormat::Mjcf => "mujoco",
-    }
 }
 
 /// The robot as an engine imported it, at the states of our import.

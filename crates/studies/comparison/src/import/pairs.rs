@@ -1,11 +1,11 @@
 //! The pairs of bodies of two import results.
 
-use super::fields::ROUNDING;
+use super::fields::Precision;
 use featherbench_model::{BodyDescription, Description, JointType, Placement, Uncertain};
 
 /// For each body of `ours`, its partner in `theirs`: by its name, else by its joint's name, else by its place in the tree.
-pub(super) fn pairs(ours: &Description, theirs: &Description) -> Vec<Option<usize>> {
-    let mut pairing = Pairing { partner: vec![None; ours.bodies.len()], taken: vec![false; theirs.bodies.len()] };
+pub(super) fn pairs(ours: &Description, theirs: &Description, precision: Precision) -> Vec<Option<usize>> {
+    let mut pairing = Pairing { precision, partner: vec![None; ours.bodies.len()], taken: vec![false; theirs.bodies.len()] };
     let by = |same: &dyn Fn(&BodyDescription, &BodyDescription) -> bool, pairing: &mut Pairing| {
         for (i, body) in ours.bodies.iter().enumerate().filter(|(i, _)| pairing.partner[*i].is_none()).collect::<Vec<_>>() {
             if let Some(j) = (0..theirs.bodies.len()).find(|&j| !pairing.taken[j] && same(body, &theirs.bodies[j])) {
@@ -21,6 +21,7 @@ pub(super) fn pairs(ours: &Description, theirs: &Description) -> Vec<Option<usiz
 }
 
 struct Pairing {
+    precision: Precision,
     partner: Vec<Option<usize>>,
     taken: Vec<bool>,
 }
@@ -58,7 +59,7 @@ impl Pairing {
             // A body without a name in the file has one that each program invents: the same mass on the same joint is the same body.
             for i in (0..ours.bodies.len()).filter(|&i| ours.bodies[i].parent == above && invented(&ours.bodies[i])).collect::<Vec<_>>() {
                 let same =
-                    |&j: &usize| theirs.bodies[j].parent == theirs_above && !self.taken[j] && alike(&ours.bodies[i], &theirs.bodies[j]);
+                    |&j: &usize| theirs.bodies[j].parent == theirs_above && !self.taken[j] && alike(&ours.bodies[i], &theirs.bodies[j], self.precision);
                 if self.partner[i].is_none()
                     && let Some(j) = (0..theirs.bodies.len()).find(same)
                 {
@@ -85,8 +86,8 @@ fn invented(body: &BodyDescription) -> bool {
 }
 
 /// Whether two bodies have the same kind of joint and, to rounding, the same mass.
-fn alike(a: &BodyDescription, b: &BodyDescription) -> bool {
-    let same_mass = a.mass > 0.0 && (a.mass - b.mass).abs() <= ROUNDING * a.mass;
+fn alike(a: &BodyDescription, b: &BodyDescription, precision: Precision) -> bool {
+    let same_mass = a.mass > 0.0 && (a.mass - b.mass).abs() <= precision.rounding() * a.mass;
     a.joint.kind.name() == b.joint.kind.name() && same_mass
 }
 

@@ -31,7 +31,7 @@ pub(super) fn tried(ours: &Description, theirs: &Description, found: &Comparison
     let model = Model::build(&set).ok()?;
     let states = carried(ours, &robot.states, ours, &model);
     let effect = Reference::new(ours, states)?.effect_of(&set)?;
-    if worst(effect.id, effect.mass_matrix) > bound(robot.depth) || theirs.bodies.is_empty() {
+    if worst(effect.id, effect.mass_matrix) > bound(robot.depth, found.precision) || theirs.bodies.is_empty() {
         return None;
     }
     let place = |&k: &usize| {

@@ -2,9 +2,9 @@
 
 use super::replay::{Answers, Reference, Replay, carried, replay};
 use super::subtree::{SubTree, unexplained};
-use super::{Class, Comparison, Effect, LARGEST, READING, SingleDifference, VARIANTS, Weight, armature, as_read, bound, reference, remedy};
+use super::{Class, Comparison, Effect, Precision, LARGEST, READING, SingleDifference, VARIANTS, Weight, armature, as_read, bound, remedy};
 use featherbench_bench::measure::worst;
-use featherbench_bench::{Cell, Context, FileFormat, Finished, Import, ImportVariant, NoAnswer, OWN, Outcome, Quantity, Robot};
+use featherbench_bench::{Cell, Context, Finished, Import, ImportVariant, NoAnswer, OWN, Outcome, Quantity, Robot};
 use featherbench_results::{Row, Verdict, canonical_json};
 use featherbench_study::{row, unanswered};
 use serde_json::{Value, json};
@@ -54,10 +54,10 @@ const WORK: usize = 4_000_000_000;
 /// The number of differences with an effect, however large the robot is.
 const LEAST_ALONE: usize = 8;
 
-/// What MuJoCo's compiler made of the file, whose import is the reference of an MJCF.
+/// The import of the reference, if that is an engine's.
 fn compiler<'a>(robot: &Robot, imports: &'a [(&Cell, Result<Import, NoAnswer>)]) -> Option<&'a Import> {
-    robot.file.as_ref().filter(|file| file.format == FileFormat::Mjcf)?;
-    let (_, import) = imports.iter().find(|(cell, _)| cell.engine == reference(FileFormat::Mjcf))?;
+    let file = robot.file.as_ref()?;
+    let (_, import) = imports.iter().find(|(cell, _)| cell.engine == file.format.reference())?;
     import.as_ref().ok()
 }
 
@@ -74,7 +74,11 @@ struct OfEngine<'a> {
 
 impl OfEngine<'_> {
     fn reference(&self) -> &'static str {
-        self.robot.file.as_ref().map_or(OWN, |file| reference(file.format))
+        self.robot.file.as_ref().map_or(OWN, |file| file.format.reference())
+    }
+
+    fn precision(&self) -> Precision {
+        Precision::of(&self.cell.scalar)
     }
 
     fn row(&self, cell: &Cell, metric: &str) -> Row {
@@ -97,7 +101,7 @@ impl OfEngine<'_> {
     fn read(&self, reading: &Import) -> Vec<Row> {
         let links = self.robot.file.as_ref().map_or(&[][..], |file| &file.links);
         let (ours, theirs) = (&self.robot.description, &reading.description);
-        let comparison = Comparison::of(ours, theirs, links, &reading.notes);
+        let comparison = Comparison::rounded(ours, theirs, links, &reading.notes, self.precision());
         // The variants are those of the file as MuJoCo accepts it, so they are no hypotheses about itself.
         let asked = comparison.is_of_dynamics() && self.compiler.is_some_and(|import| import != reading);
         let mut comparison = comparison.explained_by(ours, theirs, if asked { self.variants } else { &[] }, &reading.notes);
@@ -143,7 +147,7 @@ impl OfEngine<'_> {
 
     fn class(&self, finding: &SingleDifference, effect: Option<&Effect>) -> Class {
         let largest = effect.map(|effect| worst(effect.id, effect.mass_matrix));
-        Class::of(finding.difference.field, finding.difference.size, largest, bound(self.robot.depth))
+        Class::of(finding.difference.field, finding.difference.size, largest, self.robot.depth, self.precision())
     }
 
     /// The number of differences that affect a simulation, and the number of each class.
@@ -219,7 +223,7 @@ impl OfEngine<'_> {
     }
 
     fn unexplained(&self, robot: &Robot, replayed: &Replay) -> Row {
-        let trees = unexplained(&robot.description, replayed);
+        let trees = unexplained(&robot.description, replayed, self.precision());
         let tree = |tree: &SubTree| {
             let bodies: Vec<&str> = tree.robot.bodies.iter().map(|body| body.name.as_str()).collect();
             let error = if tree.error.is_finite() { json!(tree.error) } else { json!(tree.error.to_string()) };
@@ -228,7 +232,7 @@ impl OfEngine<'_> {
         let trees: Vec<Value> = trees.iter().map(tree).collect();
         let count = trees.len() as f64;
         let row =
-            Row { params: self.params(json!({"unexplained": trees, "gate": bound(robot.depth)})), ..self.row(self.cell, "unexplained") };
+            Row { params: self.params(json!({"unexplained": trees, "gate": bound(robot.depth, self.precision())})), ..self.row(self.cell, "unexplained") };
         self.context.gates.judge(row, count, 1.0)
     }
 }

@@ -3,6 +3,7 @@
 //! The mass matrix belongs to sub-trees. The diagonal block of a body is the composite inertia of everything that it supports, seen along
 //! its own joint. So an error begins at a body if its block differs and the blocks of all its children agree.
 
+use super::fields::Precision;
 use super::replay::Replay;
 use featherbench_model::Description;
 
@@ -15,10 +16,12 @@ use featherbench_model::Description;
 ///   is
 ///   7.8e-12.
 /// - An edit by a parser causes 1e-9 and more.
-pub fn bound(depth: usize) -> f64 {
+///
+/// In single precision it is 2²⁹ times that, as the unit of rounding is.
+pub fn bound(depth: usize, precision: Precision) -> f64 {
     const SHALLOW: f64 = 1e-12;
     const PER_JOINT: f64 = 1e-14;
-    SHALLOW.max(PER_JOINT * depth as f64)
+    precision.factor() * SHALLOW.max(PER_JOINT * depth as f64)
 }
 
 /// A part of a robot that its import result does not explain.
@@ -33,8 +36,8 @@ pub struct SubTree {
 }
 
 /// The smallest sub-trees of an import result whose answers are not those of the described robot.
-pub(super) fn unexplained(description: &Description, replay: &Replay) -> Vec<SubTree> {
-    let bound = bound(description.depth());
+pub(super) fn unexplained(description: &Description, replay: &Replay, precision: Precision) -> Vec<SubTree> {
+    let bound = bound(description.depth(), precision);
     let agrees = |error: f64| error <= bound;
     let mut next = 0;
     let dofs: Vec<std::ops::Range<usize>> = description

@@ -4,9 +4,9 @@
 //! Variants compete: the one that accounts for most differences is named first, and of equals the one with fewer edits. One that accounts
 //! for what several with fewer edits do together is not named. The others are listed with the first number that refutes them.
 
-use super::account::TESTED;
 use super::comparison::{Alone, Comparison, SingleDifference};
-use super::{Cause, Difference, Field, Weight, fields};
+use super::fields::{self, Precision};
+use super::{Cause, Difference, Field, Weight};
 use featherbench_bench::{ImportNote, ImportVariant};
 use featherbench_model::Description;
 
@@ -100,7 +100,7 @@ fn covered(predicted: &Comparison, found: &Comparison, reach: f64) -> Result<Vec
             continue;
         }
         let at = place(difference, difference.field);
-        let same = at.filter(|&k| equal(&predicted.ours, finding, &found.findings[k], reach));
+        let same = at.filter(|&k| equal(&predicted.ours, finding, &found.findings[k], reach, found.precision));
         let dynamics = difference.field.weight() == Weight::Dynamics;
         match same {
             Some(k) => {
@@ -121,17 +121,18 @@ fn refutation(due: &Difference, held: Option<&Difference>) -> String {
 }
 
 /// Whether two differences of one place are to the same value; `ours` is the robot of the first.
-fn equal(ours: &Description, due: &SingleDifference, held: &SingleDifference, reach: f64) -> bool {
+fn equal(ours: &Description, due: &SingleDifference, held: &SingleDifference, reach: f64, precision: Precision) -> bool {
+    let tested = precision.tested();
     let field = due.difference.field;
     if field == Field::Body {
         let missing = |finding: &SingleDifference| finding.difference.cause != Cause::Added;
         return missing(due) && missing(held);
     }
     match (&due.alone, &held.alone) {
-        (Some(Alone::Gravity(a)), Some(Alone::Gravity(b))) => fields::distance(*a, *b) <= TESTED * fields::norm(*a).max(fields::norm(*b)),
+        (Some(Alone::Gravity(a)), Some(Alone::Gravity(b))) => fields::distance(*a, *b) <= tested * fields::norm(*a).max(fields::norm(*b)),
         (Some(Alone::Body(i, a)), Some(Alone::Body(_, b))) => {
             let links = 1 + ours.frames.iter().filter(|frame| frame.body == Some(*i)).count();
-            fields::size(field, a, b, reach) <= TESTED * links as f64
+            fields::size(field, a, b, reach) <= tested * links as f64
         }
         _ => due.difference.theirs == held.difference.theirs,
     }

@@ -1,0 +1,1 @@
+"""Exudyn as an oracle."""

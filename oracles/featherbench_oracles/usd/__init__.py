@@ -1,0 +1,1 @@
+"""The reference reading of USD, by OpenUSD's own parser of the physics schemas."""
