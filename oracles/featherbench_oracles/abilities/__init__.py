@@ -20,7 +20,6 @@ from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading, State
 
-
 FORMATS = ("urdf", "mjcf", "sdf", "usd")
 
 

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from featherbench_oracles.abilities import (
+    FORMATS,
     HasContactRelaxations,
     HasContactSolvers,
     HasContactSteps,
@@ -27,7 +28,6 @@ from featherbench_oracles.abilities import (
     HasScenes,
     HasSemidefiniteSolvers,
     HasVariants,
-    FORMATS,
     ReadsFiles,
 )
 from featherbench_oracles.abilities.contact_steps import StepsOnContacts

@@ -1,7 +1,7 @@
 """Exudyn as an oracle: its C++ object `ObjectKinematicTree`, for robots of hinges and slides on a fixed base.
 
-A joint of Exudyn's tree turns about or slides along the z axis of its frame. So each body's frame is turned by an A with A e_z = axis: Exudyn
-gets the joint's frame R A, the centre of mass A' c and the inertia A' I A. Coordinates stay the same.
+A joint of Exudyn's tree turns about or slides along the z axis of its frame. So each body's frame is turned by an A with A e_z = axis.
+Exudyn gets the joint's frame R A, the centre of mass A' c and the inertia A' I A. Coordinates stay the same.
 """
 
 from __future__ import annotations
@@ -47,9 +47,11 @@ class ExudynRobot:
             inertias.append(turn.T @ body.inertia @ turn)
             coms.append(turn.T @ body.com)
         zeros = [0.0] * robot.nv
-        node = self.system.AddNode(NodeGenericODE2(
+        node = self.system.AddNode(
+            NodeGenericODE2(
                 referenceCoordinates=zeros, initialCoordinates=zeros, initialCoordinates_t=zeros, numberOfODE2Coordinates=robot.nv
-            ))
+            )
+        )
         self.tree = self.system.AddObject(
             ObjectKinematicTree(
                 nodeNumber=node,

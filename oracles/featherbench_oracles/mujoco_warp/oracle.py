@@ -23,7 +23,6 @@ from featherbench_oracles.mujoco.building import build
 from featherbench_oracles.mujoco.coordinates import change_of_velocities, to_engine_q
 from featherbench_oracles.mujoco.oracle import MujocoRobot
 
-
 wp.config.log_level = 30  # warnings: its kernels' names are no news
 HELD = ("body_mass", "body_ipos", "body_inertia", "body_iquat", "body_pos", "body_quat", "jnt_pos")
 
@@ -96,7 +95,7 @@ class WarpRobot(MujocoRobot):
         return mass_matrix_probe(mass.__matmul__, np.diag(mass), ask.probe)
 
     def forward_single(self, ask: State) -> Array:
-        """Answer `fd` by fwd_acceleration. The solver of constraints has none here, and its kernels are compiled for each number of dofs."""
+        """Answer `fd` by fwd_acceleration. Without constraints no solver runs: its kernels are compiled for each number of dofs."""
         change = self._place(ask)
         self._set("qfrc_applied", change.to_engine_tau(ask.tau))
         mjw.fwd_actuation(self.single, self.worlds)

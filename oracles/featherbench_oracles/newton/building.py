@@ -41,7 +41,11 @@ def build(robot: Description) -> newton.Model:
         if body.joint.type == "free" and k > 0:
             raise Unsupported(f"Newton's velocity of a free joint is that of a root, and joint {body.joint.name} is none")
         builder.add_link(
-            mass=body.mass, com=tuple(body.com.tolist()), inertia=wp.mat33(*body.inertia.ravel().tolist()), label=f"body {k}", lock_inertia=True
+            mass=body.mass,
+            com=tuple(body.com.tolist()),
+            inertia=wp.mat33(*body.inertia.ravel().tolist()),
+            label=f"body {k}",
+            lock_inertia=True,
         )
         joints.append(add_joint(builder, body.joint, body.parent, k))
     if joints:
@@ -66,7 +70,9 @@ def add_joint(builder: newton.ModelBuilder, joint: Joint, parent: int, child: in
     kinds = {"revolute": builder.add_joint_revolute, "prismatic": builder.add_joint_prismatic}
     if joint.type in kinds:
         axis = wp.vec3(*joint.axis.tolist())
-        return kinds[joint.type](parent, child, parent_xform=place, axis=axis, armature=float(joint.armature[0]), target_ke=0.0, target_kd=0.0)
+        return kinds[joint.type](
+            parent, child, parent_xform=place, axis=axis, armature=float(joint.armature[0]), target_ke=0.0, target_kd=0.0
+        )
     if joint.armature.any():
         raise Unsupported(f"Newton has armature on joints of one degree of freedom (joint {joint.name})")
     if joint.type == "spherical":

@@ -10,7 +10,23 @@ import warp as wp
 from numpy.typing import ArrayLike
 
 from featherbench_oracles.core.algebra import Array, rotation
-from featherbench_oracles.core.conventions import ABOUT_ORIGIN, AXIS, COM, GRAVITY, MASS, MOMENTS, SINGLE, WRONG_R, XYZW, Claims, P, R, V, W, about
+from featherbench_oracles.core.conventions import (
+    ABOUT_ORIGIN,
+    AXIS,
+    COM,
+    GRAVITY,
+    MASS,
+    MOMENTS,
+    SINGLE,
+    WRONG_R,
+    XYZW,
+    Claims,
+    P,
+    R,
+    V,
+    W,
+    about,
+)
 from featherbench_oracles.core.conventions import claim as claim_in_double
 from featherbench_oracles.newton.building import transform
 

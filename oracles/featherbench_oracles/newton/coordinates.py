@@ -7,8 +7,8 @@
     spherical  q                                            R                        0: angular velocity in joint-frame axes
     all other  q                                            identity                 0
 
-A free joint has [linear; angular] in world axes, where linear is the velocity of the root's centre of mass c. Its R turns body axes to those
-of the world, that of a spherical joint to those of the joint's frame. T of a free joint is not orthogonal. So of the changes in `change` only
+A free joint has [linear; angular] in world axes, where linear is the velocity of the root's centre of mass c. Its R turns body axes to
+those of the world, that of a spherical joint to those of the joint's frame. T of a free joint is not orthogonal. So of the changes only
 those hold that are made by T and T': v and a to the engine, tau and M back.
 """
 

@@ -41,7 +41,7 @@ class NewtonRobot:
         self.robot, self.model, self.state = robot, model, model.state()
         nv = robot.nv
         # Newton's place of each coordinate; the body of a free root, whose centre of mass its velocity is that of
-        self.q, self.v = (np.array(read.q), np.array(read.v)) if read else (slice(None), slice(None))
+        self.q, self.v = np.array(read.q if read else range(robot.nq)), np.array(read.v if read else range(nv))
         self.root = int(read.index["joint_child"][read.order[0]]) if read else 0
         self.mass = wp.zeros((1, nv, nv), dtype=wp.float32)
         self.gravity, self.coriolis, self.force = (wp.zeros(nv, dtype=wp.float32) for _ in range(3))
@@ -107,7 +107,7 @@ class NewtonRobot:
         return newton.solvers.SolverFeatherstone(self.model, angular_damping=0.0)
 
     def forward(self, ask: State) -> Array:
-        """Answer `fd` by a step of SolverFeatherstone, whose joint_qdd is the acceleration at its begin. Its free joint has coordinates of its own."""
+        """Answer `fd` by joint_qdd of a step of SolverFeatherstone, the acceleration at its begin. Its free joint has other coordinates."""
         if any(body.joint.type == "free" for body in self.robot.bodies):
             raise Unsupported("Newton's SolverFeatherstone has other coordinates for a free joint")
         change, control = self._update(ask), self.model.control()
@@ -121,7 +121,7 @@ class NewtonRobot:
         return [np.append(rotation(pose[3:]).ravel(), pose[:3]) for pose in _doubles(self.state.body_q)]
 
 
-def _placed(given: Array, places: NDArray[np.intp] | slice) -> NDArray[np.float32]:
+def _placed(given: Array, places: NDArray[np.intp]) -> NDArray[np.float32]:
     """Put numbers in Newton's order, in single."""
     held = np.empty(len(given), dtype=np.float32)
     held[places] = given

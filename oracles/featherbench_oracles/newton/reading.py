@@ -1,7 +1,7 @@
 """Newton's own parsers of URDF, MJCF and USD, and what the model then holds, in single precision.
 
-A joint of several axes (D6) is a chain of joints: its translations come first. Bodies of fixed joints are merged in the description, and stay
-bodies of the model.
+A joint of several axes (D6) is a chain of joints: its translations come first. Bodies of fixed joints are merged in the description, and
+stay bodies of the model.
 """
 
 from __future__ import annotations
@@ -39,7 +39,17 @@ class Read:
 
     def __init__(self, model: newton.Model) -> None:
         self.model = model
-        names = ("joint_X_p", "joint_X_c", "joint_axis", "joint_armature", "joint_damping", "joint_friction", "body_mass", "body_com", "body_inertia")
+        names = (
+            "joint_X_p",
+            "joint_X_c",
+            "joint_axis",
+            "joint_armature",
+            "joint_damping",
+            "joint_friction",
+            "body_mass",
+            "body_com",
+            "body_inertia",
+        )
         limits = ("joint_limit_lower", "joint_limit_upper", "joint_velocity_limit", "joint_effort_limit")
         self.held = {name: np.array(getattr(model, name).numpy(), dtype=float) for name in (*names, *limits)}
         counts = ("joint_type", "joint_parent", "joint_child", "joint_q_start", "joint_qd_start", "joint_dof_dim")
@@ -73,7 +83,7 @@ class Read:
 
     def _links(self) -> list[Link]:
         places = {-1: -1}
-        links = []
+        links: list[Link] = []
         for joint in self.order:
             parent, child = int(self.index["joint_parent"][joint]), int(self.index["joint_child"][joint])
             inner = _place(self.held["joint_X_c"][joint])
@@ -109,7 +119,12 @@ class Read:
 
     def _dofs(self, dof: int) -> dict[str, Array]:
         names = {"armature": "joint_armature", "damping": "joint_damping", "friction": "joint_friction"}
-        limits = {"lower": "joint_limit_lower", "upper": "joint_limit_upper", "velocity": "joint_velocity_limit", "effort": "joint_effort_limit"}
+        limits = {
+            "lower": "joint_limit_lower",
+            "upper": "joint_limit_upper",
+            "velocity": "joint_velocity_limit",
+            "effort": "joint_effort_limit",
+        }
         dofs = {key: self.held[name][[dof]] for key, name in (names | limits).items()}
         none = {key for key in limits if abs(dofs[key][0]) >= (EFFORT if key in ("effort", "velocity") else newton.MAXVAL)}
         return {key: np.array([inf]) if key in none else value for key, value in dofs.items()}

@@ -1,7 +1,7 @@
 """Bullet's importers of URDF, SDF and MJCF, and what the multi-body then holds.
 
-Inertias are the file's by the flag `URDF_USE_INERTIA_FROM_FILE`; without it they come from the shapes. A multi-body has a base: the first link
-of the file.
+Inertias are the file's by the flag `URDF_USE_INERTIA_FROM_FILE`; without it they come from the shapes. A multi-body has a base, the first
+link of the file.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import pybullet as pb
 from numpy.typing import NDArray
 
 from featherbench_oracles.core import bad_values, mimics
-from featherbench_oracles.core.algebra import Array, rotation
+from featherbench_oracles.core.algebra import rotation
 from featherbench_oracles.core.attributes import not_compared
 from featherbench_oracles.core.edits import Held, edited
 from featherbench_oracles.core.loaded import loaded
@@ -112,7 +112,8 @@ def _held_of(made: int, name: str, client: int) -> Held | None:
 
 def _links(made: int, order: list[int], client: int, stands: bool) -> list[Link]:
     base = pb.getBodyInfo(made, physicsClientId=client)[0].decode(errors="replace")
-    centre = Place(*reversed([f(np.array(x)) for f, x in zip((np.array, rotation), pb.getBasePositionAndOrientation(made, physicsClientId=client), strict=True)]))
+    position, turn = pb.getBasePositionAndOrientation(made, physicsClientId=client)
+    centre = Place(rotation(np.array(turn)), np.array(position))
     place = centre @ _principal(made, -1, client).inverse() if stands else Place()
     links = [Link(base, *_mass(made, -1, client), -1, place, [] if stands else [HeldJoint("root_joint", "free")])]
     index = {-1: 0}

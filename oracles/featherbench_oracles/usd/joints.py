@@ -87,7 +87,10 @@ class UsdJoint:
             "velocity": (angle, ["newton:velocityLimit", "physxJoint:maxJointVelocity"]),
             "effort": (1.0, ["urdf:limit:effort"]),  # as in the URDF, whatever the units of the stage
         }
-        held = {key: (unit, next((number for name in names if (number := self._number(name)) is not None), None)) for key, (unit, names) in found.items()}
+        held = {
+            key: (unit, next((number for name in names if (number := self._number(name)) is not None), None))
+            for key, (unit, names) in found.items()
+        }
         return {key: unit * number if abs(number) < LARGEST else inf for key, (unit, number) in held.items() if number is not None}
 
     def _number(self, name: str) -> float | None:
@@ -135,7 +138,13 @@ def joints(stage: Usd.Stage, parsed: dict[Any, Any], units: Units, notes: list[H
             found.append(UsdJoint(stage.GetPrimAtPath(path), ends, places, *of_kind(held, units), not held.excludeFromArticulation))
     for kind in (UsdPhysics.ObjectType.DistanceJoint, UsdPhysics.ObjectType.CustomJoint):
         for path in parsed.get(kind, ((), ()))[0]:
-            notes.append(note("not_compared", path.name, f"joint {path.name} is a {stage.GetPrimAtPath(path).GetTypeName()}, which is no joint of a tree"))
+            notes.append(
+                note(
+                    "not_compared",
+                    path.name,
+                    f"joint {path.name} is a {stage.GetPrimAtPath(path).GetTypeName()}, which is no joint of a tree",
+                )
+            )
     return found
 
 

@@ -57,12 +57,13 @@ def mass_of(body: Usd.Prim, units: Units, notes: list[Header]) -> Held:
         if mass <= 0 and not colliders:  # neither a mass nor a shape
             mass, moments, com, axes = 0.0, Gf.Vec3f(0), Gf.Vec3f(0), Gf.Quatf(1)
         if not colliders:
-            axes = Gf.Quatf(1) if not moments[0] != moments[1] else said.GetPrincipalAxesAttr().Get()
+            axes = said.GetPrincipalAxesAttr().Get()
     turn = _turn(axes)
     held = float(mass) * units.mass, units.length * vector(com), units.inertia * (turn * vector(moments)) @ turn.T
     name = body.GetName()
     if not whole and float(mass):
-        notes.append(note("from_geometry", name, f"{name} says not all of mass, centre of mass and inertia: OpenUSD computes it", inertial(*held)))
+        computed = f"{name} says not all of mass, centre of mass and inertia: OpenUSD computes it"
+        notes.append(note("from_geometry", name, computed, inertial(*held)))
     return held[0], held[1], _exact(body, units, held, notes)
 
 

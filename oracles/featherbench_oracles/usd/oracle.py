@@ -6,8 +6,8 @@ from pathlib import Path
 
 from pxr import Usd
 
-from featherbench_oracles.core.abilities import ReadsFiles
-from featherbench_oracles.core.protocol import Quantities, Reading, Unsupported
+from featherbench_oracles.abilities import ReadsFiles
+from featherbench_oracles.core.protocol import Quantities, Reading, Robot, Unsupported
 from featherbench_oracles.core.robot import Description
 from featherbench_oracles.usd import reading
 
@@ -25,6 +25,6 @@ class OpenUsd(ReadsFiles):
         """Read a USD by UsdPhysics."""
         return reading.read(path)
 
-    def prepare(self, description: Description) -> None:
+    def prepare(self, description: Description) -> Robot:
         """Refuse: OpenUSD computes nothing."""
         raise Unsupported("OpenUSD has no dynamics")

@@ -1,8 +1,8 @@
 """A robot in USD, by OpenUSD's own parser of the physics schemas, `UsdPhysics.LoadUsdPhysicsFromRange`.
 
 Bodies are the prims with an enabled `RigidBodyAPI`. A body without a joint to another one or to the world floats. So does the root of an
-articulation that nothing holds. The tree begins at the world, then at the articulation's root, then at the first body of the file; joints that
-close a loop are told. Siblings are in the order of their joints on the stage.
+articulation that nothing holds. The tree begins at the world, then at the articulation's root, then at the first body of the file. Joints
+that close a loop are told. Siblings are in the order of their joints on the stage.
 """
 
 from __future__ import annotations
@@ -66,9 +66,10 @@ def _told(stage: Usd.Stage, notes: list[Header]) -> None:
         for name in sets.GetNames():
             chosen, others = sets.GetVariantSelection(name) or "none", ", ".join(sets.GetVariantSet(name).GetVariantNames())
             notes.append(note("warning", prim.GetName(), f"{prim.GetPath()} has the variant {chosen} of {name} ({others})"))
-    for layer, asset in ((layer, asset) for layer in stage.GetUsedLayers() for asset in layer.GetCompositionAssetDependencies()):
-        if asset and not Sdf.Layer.FindOrOpenRelativeToLayer(layer, asset):
-            notes.append(note("warning", None, f"{layer.GetDisplayName()} names {asset}, which is not found"))
+    for layer in stage.GetUsedLayers():
+        for asset in layer.GetCompositionAssetDependencies():
+            if asset and not Sdf.Layer.FindOrOpenRelativeToLayer(layer, asset):
+                notes.append(note("warning", None, f"{layer.GetDisplayName()} names {asset}, which is not found"))
 
 
 def _gravity(stage: Usd.Stage, parsed: dict[Any, Any], units: Units, notes: list[Header]) -> Array:

@@ -1,0 +1,1 @@
+"""MuJoCo XLA (MJX) as an oracle, in single precision."""
