@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterator
 from importlib import metadata
 from pathlib import Path
@@ -51,7 +52,8 @@ class Oracles:
         require(engine)
         oracle = self.running.get(engine)
         if oracle is None or oracle.process.poll() is not None:
-            oracle = self.running[engine] = Oracle.of(engine)
+            python = str(alone(engine)) if engine in ALONE else sys.executable
+            oracle = self.running[engine] = Oracle.of(engine, python)
         return oracle
 
     def end(self) -> None:

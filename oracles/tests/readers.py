@@ -30,6 +30,7 @@ REPLAY = within(1e-13)  # unit-free; these robots are shallow, and M's terms are
 DIGITS = 1e-15  # relative error of reading a decimal, and of one rotation by it
 REPEATED = 1e-16  # relative error of a number that is told twice
 QUARTER = turned(0.6, 0, 0, 0.8)  # the rotation of the quaternion in the MJCF files
+FORMATS = {"xml": "mjcf", "urdf": "urdf", "sdf": "sdf", "usda": "usd"}
 THREE_ENGINES = ("pinocchio", "mujoco", "drake")  # DART's other edits: test_dart_computes_with_what_it_tells
 
 
@@ -84,7 +85,8 @@ class Readers:
     def read(self, engine: str, name: str, text: str, base: str = "fixed", replay: bool = True) -> Read:
         """Have the engine read a file, which must succeed, and compare the robot with the description that it told."""
         path, oracle = self.file(name, text), self.oracles[engine]
-        header = {"op": "import", "file": str(path), "format": "mjcf" if name.endswith(".xml") else "urdf", "base": base}
+        form = FORMATS[path.suffix[1:]]
+        header = {"op": "import", "file": str(path), "format": form, "base": base}
         answer, blocks = oracle.must(header)
         if replay:
             self._replay(oracle, answer)

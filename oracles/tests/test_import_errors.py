@@ -22,9 +22,9 @@ BAD: dict[str, tuple[str, str | None]] = {
     "without its part": ("part.xml", '<mujoco model="l"><include file="nowhere.xml"/><worldbody/></mujoco>'),
     "another document": ("page.xml", "<html/>"),
     "a link twice": ("twice.urdf", '<robot name="t"><link name="a"/><link name="a"/></robot>'),
-    "of an unknown format": ("world.sdf", files.WORLD),
+    "of an unknown format": ("world.step", files.WORLD),
 }
-FORMATS = {"xml": "mjcf", "urdf": "urdf", "sdf": "sdf"}
+FORMATS = {"xml": "mjcf", "urdf": "urdf", "step": "step"}
 
 
 @pytest.mark.parametrize("bad", BAD)

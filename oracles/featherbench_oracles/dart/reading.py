@@ -103,7 +103,10 @@ def _urdf(path: Path, base: str, bare: bool = False) -> dynamics.Skeleton | None
 def _world(path: Path, form: str) -> dynamics.Skeleton | None:
     """Load the one skeleton that moves. DART makes a skeleton of each body in the world of an MJCF."""
     if form == "sdf":
-        return utils.SdfParser.readSkeleton(common.Uri(str(path)))
+        skeleton = utils.SdfParser.readSkeleton(common.Uri(str(path)))
+        if skeleton is not None:
+            _depth_first(skeleton)
+        return skeleton
     world = utils.MjcfParser.readWorld(common.Uri(str(path)))
     if world is None:
         return None
@@ -111,6 +114,18 @@ def _world(path: Path, form: str) -> dynamics.Skeleton | None:
     if len(moving) != 1:
         raise Unsupported(f"DART reads {path.name} as {len(moving)} moving skeletons, of which descriptions hold one")
     return moving[0]
+
+
+def _depth_first(skeleton: dynamics.Skeleton) -> None:
+    """Refuse links that are not depth-first: of an SDF they stay in the order of the file, and with them the coordinates."""
+    below = {node.getName(): [node.getChildBodyNode(k) for k in range(node.getNumChildBodyNodes())] for node in skeleton.getBodyNodes()}
+    order: list[str] = []
+    ahead = [skeleton.getRootBodyNode(k) for k in reversed(range(skeleton.getNumTrees()))]
+    while ahead:
+        order.append(ahead.pop().getName())
+        ahead.extend(reversed(below[order[-1]]))
+    if order != [node.getName() for node in skeleton.getBodyNodes()]:
+        raise Unsupported("DART keeps the links of an SDF in the file's order, and descriptions are depth-first: write the links so")
 
 
 def _place(pose: Isometry3) -> Place:

@@ -68,7 +68,7 @@ def solid(collider: Usd.Prim, body: Usd.Prim) -> Solid:
         return _mesh(UsdGeom.Mesh(collider), linear, origin)
     if collider.IsA(UsdGeom.Cube):
         size = UsdGeom.Cube(collider).GetSizeAttr().Get()
-        return _moved(size**3, np.zeros(3), np.eye(3) * size**5 / 12, linear, origin)
+        return _moved(size**3, np.zeros(3), np.eye(3) * size**5 / 6, linear, origin)
     if collider.IsA(UsdGeom.Sphere):
         radius = UsdGeom.Sphere(collider).GetRadiusAttr().Get()
         return _moved(4 * pi * radius**3 / 3, np.zeros(3), np.eye(3) * 4 * pi * radius**5 / 15, linear, origin)

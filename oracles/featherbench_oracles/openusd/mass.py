@@ -12,8 +12,8 @@ from pxr import Gf, Usd, UsdPhysics
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.reading import inertial, note, turned
-from featherbench_oracles.usd.solids import Solid, solid
-from featherbench_oracles.usd.units import Units, vector
+from featherbench_oracles.openusd.solids import Solid, solid
+from featherbench_oracles.openusd.units import Units, vector
 
 SINGLE = 4e-6  # relative: the rounding of a product R diag R' whose factors are single, some ten times 2⁻²³
 EXACT = "newton:inertia"  # xx, yy, zz, xy, xz, yz about the centre of mass, in double: the schema's own attributes are single

@@ -7,6 +7,7 @@ that close a loop are told. Siblings are in the order of their joints on the sta
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,9 +23,9 @@ from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Reading
 from featherbench_oracles.core.reading import HeldJoint, Link, Place, describe, note, overheard
 from featherbench_oracles.core.robot import Description
-from featherbench_oracles.usd.joints import UsdJoint, joints
-from featherbench_oracles.usd.mass import mass_of
-from featherbench_oracles.usd.units import Units, vector
+from featherbench_oracles.openusd.joints import UsdJoint, joints
+from featherbench_oracles.openusd.mass import mass_of
+from featherbench_oracles.openusd.units import Units, vector
 
 EARTH = 9.81  # m/s², of a scene that says no magnitude
 WORLD = Sdf.Path.emptyPath
@@ -56,7 +57,7 @@ def read(path: Path) -> Reading:
 def _said(error: Tf.ErrorException) -> str:
     """Shorten OpenUSD's message to what it says of the file."""
     lines = [line.split(" : ", 1)[-1].strip(" '\t") for line in str(error).splitlines() if " : " in line]
-    return "; ".join(lines) or str(error)
+    return re.sub(r" matching pxr.*? at ", " at ", "; ".join(lines) or str(error))  # the parser's own names
 
 
 def _told(stage: Usd.Stage, notes: list[Header]) -> None:

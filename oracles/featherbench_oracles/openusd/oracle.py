@@ -9,7 +9,7 @@ from pxr import Usd
 from featherbench_oracles.abilities import ReadsFiles
 from featherbench_oracles.core.protocol import Quantities, Reading, Robot, Unsupported
 from featherbench_oracles.core.robot import Description
-from featherbench_oracles.usd import reading
+from featherbench_oracles.openusd import reading
 
 
 class OpenUsd(ReadsFiles):

@@ -13,7 +13,7 @@ from pxr import Sdf, Usd, UsdPhysics
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.reading import HeldJoint, Place, note
-from featherbench_oracles.usd.units import Units
+from featherbench_oracles.openusd.units import Units
 
 LARGEST = 3.4e38  # a number beyond is infinite: the largest single is written for no limit
 DOFS = UsdPhysics.JointDOF
