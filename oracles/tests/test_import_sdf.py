@@ -37,7 +37,8 @@ class Drawn:
 
     def __init__(self, seed: int, relative: bool, chain: bool = False) -> None:
         rng = np.random.default_rng(seed)
-        poses, self.due, links, joints = [], [], [], []
+        poses: list[Place] = []
+        self.due, links, joints = [], [], []
         for k in range(int(rng.integers(2, 6))):
             parent = int(rng.integers(k - 1 if chain else 0, k)) if k else -1
             place, kind = drawn_place(rng), str(rng.choice(KINDS))

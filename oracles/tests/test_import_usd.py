@@ -123,6 +123,7 @@ class Drawn:
         """Compare what was read, as far as descriptions leave no choice."""
         assert sorted(read.names()) == sorted(name for name, *_ in self.due)
         poses: dict[str, Place] = {}  # of each link in the world, at zero
+        origins: dict[str, Place] = {}  # of each body
         for name, parent, kind, place, axis, anchor, (mass, com, moments, axes), limits in self.due:
             body = read.body(name)
             joint = body["joint"]
@@ -135,9 +136,9 @@ class Drawn:
             poses[name] = poses.get(f"b{parent}", Place()) @ place
             held = Place.of(joint["placement"])
             origin = poses[name] @ Place(translation=shift)
-            above_origin = self.origins[f"b{parent}"] if parent >= 0 else Place()
+            above_origin = origins[f"b{parent}"] if parent >= 0 else Place()
             world = above_origin @ held
-            self.origins[name] = world
+            origins[name] = world
             assert same(world.translation, origin.translation, SINGLE)
             assert same(world.rotation, origin.rotation, SINGLE)
             turn = rotation(axes)
@@ -145,11 +146,6 @@ class Drawn:
             assert same(body["mass"], mass, SINGLE)
             assert same(body["com"], com - shift, SINGLE)
             assert same(body["inertia"], inertia[np.triu_indices(3)], SINGLE)
-
-    @property
-    def origins(self) -> dict[str, Place]:
-        """The frames of the bodies that were seen."""
-        return self.__dict__.setdefault("_origins", {})
 
 
 @pytest.mark.parametrize("engine", ["openusd", "newton"])

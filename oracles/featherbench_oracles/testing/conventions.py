@@ -7,8 +7,8 @@ refutes it, or null, and what refutes it with its first alternative in place of 
 from __future__ import annotations
 
 import json
+import os
 import sys
-from contextlib import redirect_stdout
 from importlib import import_module
 
 from featherbench_oracles.core.conventions import Convention
@@ -28,6 +28,8 @@ def refutations(engine: str) -> Refutations:
 
 
 if __name__ == "__main__":
-    with redirect_stdout(sys.stderr):  # some engines print
-        found = refutations(sys.argv[1])
-    json.dump(found, sys.stdout)
+    kept = os.dup(1)
+    os.dup2(2, 1)  # some engines print, also from C
+    text = json.dumps(refutations(sys.argv[1]))
+    with os.fdopen(kept, "w", encoding="utf-8") as answer:
+        answer.write(text)
