@@ -62,6 +62,34 @@ class ReadsFiles(Protocol):
 
 
 @runtime_checkable
+class WritesFiles(Protocol):
+    """The operation `rewrite`."""
+
+    def rewrite(self, path: Path, form: str, into: Path) -> list[Header]:
+        """Read a file and write it again by each of the engine's writers.
+
+        Parameters
+        ----------
+        path : Path
+            The file, which has passed the checks of `examination`.
+        form : str
+            One of `FORMATS`.
+        into : Path
+            A folder for what is written.
+
+        Returns
+        -------
+        list of dict
+            For each writer `by`, its name, and `file`, or the `reason` why there is none.
+
+        Raises
+        ------
+        Unsupported
+            If the engine does not read the format.
+        """
+
+
+@runtime_checkable
 class HasVariants(Protocol):
     """The operation `variants`, of the engine whose import is the reference of a format."""
 

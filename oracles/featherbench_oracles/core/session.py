@@ -29,6 +29,7 @@ from featherbench_oracles.abilities import (
     HasSemidefiniteSolvers,
     HasVariants,
     ReadsFiles,
+    WritesFiles,
 )
 from featherbench_oracles.abilities.contact_steps import StepsOnContacts
 from featherbench_oracles.abilities.contacts import Contacts
@@ -105,6 +106,7 @@ class Session:
             "prepare": self.prepare,
             "import": self.import_file,
             "variants": self.variants,
+            "rewrite": self.rewrite,
             "states": self.set_states,
             "evaluate": self.evaluate,
             "clock": self.clock,
@@ -140,6 +142,8 @@ class Session:
         }
         hello |= self.contact_steps.hello() | self.loops.hello() | self.scenes.hello()
         hello |= {key: list(solvers) for key, solvers in listed.items() if solvers}
+        if isinstance(engine, WritesFiles):
+            hello["writes"] = True
         if isinstance(engine, HasResidual):
             hello["residual"] = {"acceleration": engine.residual_acceleration}
         if any(isinstance(function, Measured) for by_method in engine.quantities.values() for function in by_method.values()):
@@ -184,6 +188,13 @@ class Session:
         if not isinstance(self.engine, HasVariants):
             raise Unsupported(f"{self.engine.name} tells no variants of files")
         return {"variants": self.engine.variants(examined(Path(header["file"]), form), form)}, {}
+
+    def rewrite(self, header: Header, _blocks: Blocks) -> Answer:
+        """Write a file again by the engine's writers. The robot that the engine holds stays."""
+        form, _ = _asked_file(header)
+        if not isinstance(self.engine, WritesFiles):
+            raise Unsupported(f"{self.engine.name} writes no files")
+        return {"written": self.engine.rewrite(examined(Path(header["file"]), form), form, Path(header["into"]))}, {}
 
     def set_states(self, header: Header, blocks: Blocks) -> Answer:
         """Keep the states for later evaluations."""

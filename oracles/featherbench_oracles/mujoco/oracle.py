@@ -9,14 +9,14 @@ from pathlib import Path
 import mujoco as mj
 import numpy as np
 
-from featherbench_oracles.abilities import HasContactSteps, HasLoops, HasRods, HasSceneDerivatives, HasScenes, HasVariants, ReadsFiles
+from featherbench_oracles.abilities import HasContactSteps, HasLoops, HasRods, HasSceneDerivatives, HasScenes, HasVariants, ReadsFiles, WritesFiles
 from featherbench_oracles.abilities.derivatives import Differentiated
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.change import CoordinateChange
 from featherbench_oracles.core.messages import Header
 from featherbench_oracles.core.protocol import Quantities, Reading, State, Unsupported, mass_matrix_probe, readback_row
 from featherbench_oracles.core.robot import Description
-from featherbench_oracles.mujoco import reading, scenes, standing
+from featherbench_oracles.mujoco import reading, scenes, standing, writing
 from featherbench_oracles.mujoco.building import build, chains, motions
 from featherbench_oracles.mujoco.coordinates import change_of_velocities, from_wxyz, rates_of_change, to_engine_q
 from featherbench_oracles.mujoco.holding import LOOPS
@@ -280,7 +280,7 @@ def _forward_and_centred(answer: Callable[..., Array]) -> dict[str, Callable[...
     return _with_steps(answer, "difference_centred", centred=True) | _with_steps(answer, "difference", centred=False)
 
 
-class Mujoco(ReadsFiles, HasVariants, HasContactSteps, HasLoops, HasRods, HasScenes, HasSceneDerivatives):
+class Mujoco(ReadsFiles, WritesFiles, HasVariants, HasContactSteps, HasLoops, HasRods, HasScenes, HasSceneDerivatives):
     """The engine MuJoCo, for `session.serve`."""
 
     name = "mujoco"
@@ -322,6 +322,11 @@ class Mujoco(ReadsFiles, HasVariants, HasContactSteps, HasLoops, HasRods, HasSce
     def read(self, path: Path, form: str, base: str) -> Reading:
         """Read a file by MuJoCo's parser and compiler."""
         return reading.read(path, form, base, MujocoRobot)
+
+    def rewrite(self, path: Path, form: str, into: Path) -> list[Header]:
+        """Write a URDF or an MJCF as MJCF."""
+        del form
+        return writing.rewrite(path, into)
 
     def variants(self, path: Path, form: str) -> list[Header]:
         """List the variants of an MJCF."""

@@ -200,6 +200,9 @@ pub struct CompareArgs {
     /// All files hold one robot, whatever its parts are called: compare each with the first.
     #[arg(long)]
     pub one: bool,
+    /// Write the file again by every writer, ours and those of engines and converters, and compare what is read from each.
+    #[arg(long, conflicts_with = "one")]
+    pub round_trip: bool,
     /// Give each URDF's base six degrees of freedom (other files say themselves what floats).
     #[arg(long)]
     pub floating: bool,

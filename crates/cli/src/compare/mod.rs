@@ -4,6 +4,7 @@ pub mod compared;
 pub mod forms;
 pub mod other_file;
 pub mod outcome;
+pub mod round_trip;
 pub mod table;
 pub mod timeout;
 
@@ -43,6 +44,9 @@ const LARGE: usize = 500;
 /// Compares robots by both routes and reports.
 pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let start = Instant::now();
+    if args.round_trip && args.files.len() > 1 {
+        return Err(Fail::input("--round-trip: give one file".into()));
+    }
     let described = oracles::described(root)?;
     // Bad files are told before anything is installed or started, and the others are compared.
     let mut bad: Vec<Fail> = Vec::new();
@@ -90,16 +94,19 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     if robots.is_empty() {
         return Err(ended(&bad));
     }
-    let others = other_files(&robots, args.one);
+    let started = SystemTime::now();
+    let folder = run::folder(root, args.out.as_deref(), NAME, started)?;
+    let mut others = other_files(&robots, args.one);
+    if args.round_trip {
+        others = round_trip::written(&robots, &opened.engines, &folder.join(round_trip::FOLDER))?;
+    }
     let pairs: Vec<(String, String)> = others.iter().map(|other| (other.identity().name.clone(), other.of.clone())).collect();
     opened.engines.extend(others.into_iter().map(|other| Box::new(other) as Box<dyn Engine>));
     // Another file is asked about the robot of the first alone, and the robot of another file is compared once.
     let asked = |engine: &str, robot: &str| pairs.iter().all(|(other, of)| other != engine || of == robot);
 
-    let started = SystemTime::now();
     let about = About { suite: NAME, hash: &hash, seed: SEED, live: true, robots: &robots };
     let info = run::describe(root, provenance::collect(root.path()), &about, &opened, started)?;
-    let folder = run::folder(root, args.out.as_deref(), NAME, started)?;
     run::tell_notes(&info);
     let mut run = Run::open(&folder, Opening::New, info)?;
     run.info.seconds.insert("setup".into(), start.elapsed().as_secs_f64());
@@ -222,10 +229,13 @@ impl Source {
 /// The engines that are asked. By default they are those that read one of the formats. Of those that have an environment of their own, one is
 /// left out that is not there, if another one reads the format as well as the reference.
 fn engines(root: &Root, args: &CompareArgs, described: &Engines, files: &[Source]) -> Result<Vec<String>, Fail> {
-    let readers = described.names(|engine| !engine.reads.is_empty());
+    let readers = described.names(|engine| !engine.reads.is_empty() || engine.writes);
     let Some(named) = &args.engines else {
         let formats: BTreeSet<FileFormat> = files.iter().map(Source::format).collect();
         let asked = |engine: &&DescribedEngine| {
+            if args.round_trip && (engine.writes || engine.name == FileFormat::Usd.reference() || engine.name == FileFormat::Mjcf.reference()) {
+                return true;
+            }
             formats.iter().any(|format| {
                 let others = || described.iter().filter(|other| other.reads.contains(format) && other.name != format.reference());
                 let at_hand = |other: &DescribedEngine| oracles::is_at_hand(root, other, described);

@@ -22,10 +22,15 @@ pub struct OtherFile {
 impl OtherFile {
     /// The file of `other`, if both robots have a file.
     pub fn new(first: &Robot, other: &Robot) -> Option<Self> {
+        let name = other.file.as_ref()?.path.file_name()?.to_string_lossy().into_owned();
+        Self::of_writer(&name, first, other)
+    }
+
+    /// What a writer made of the first robot's file, as it is read again.
+    pub fn of_writer(name: &str, first: &Robot, other: &Robot) -> Option<Self> {
         let file = other.file.as_ref().filter(|_| first.file.is_some())?;
-        let name = file.path.file_name()?.to_string_lossy().into_owned();
         let identity = Identity {
-            name: if other.name == name { format!("the file {name}") } else { name },
+            name: name.to_owned(),
             version: file.hash.chars().take(8).collect(),
             source: EngineSource::Live,
             build: BTreeMap::from([("format".into(), file.format.name().into())]),

@@ -1,11 +1,11 @@
 //! An engine that is asked about a robot no more once it has not answered in time. What did not come within the limit is a stated outcome,
 //! and the other engines go on.
 
-use featherbench_bench::{Engine, Evaluation, Identity, Import, ImportVariant, NoAnswer, Quantity, Robot, RobotFile};
+use featherbench_bench::{Engine, Evaluation, Identity, Import, ImportVariant, NoAnswer, Quantity, Rewritten, Robot, RobotFile};
 use featherbench_robots::StateBatch;
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// The first words of the error of a process that did not answer in time.
@@ -65,6 +65,11 @@ impl Engine for Patient {
         self.admit(Some(file))?;
         // They are no answer about the robot: one that has too many is asked for the others all the same.
         self.judged(None, "making variants of the file", self.engine.variants(file))
+    }
+
+    fn rewrite(&self, file: &RobotFile, into: &Path) -> Result<Vec<Rewritten>, NoAnswer> {
+        self.admit(Some(file))?;
+        self.judged(None, "writing the file again", self.engine.rewrite(file, into))
     }
 
     fn prepare<'a>(

@@ -75,7 +75,7 @@ pub use gates::{Factor, Gate, Gates, Planted, Sharpness};
 pub use layout::DENSE_LIMIT;
 pub use robot::class::RobotClass;
 pub use robot::file::{FileBase, FileContent, FileFormat, RobotFile, WATER};
-pub use robot::import::{Import, ImportNote, ImportVariant};
+pub use robot::import::{Import, ImportNote, ImportVariant, Rewritten};
 pub use robot::relocation::{Relocation, STACK_PLACES, on_stack_at};
 pub use robot::source::RobotSource;
 pub use robot::{Robot, Route};

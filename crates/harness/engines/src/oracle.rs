@@ -19,7 +19,7 @@ use crate::{request, shape};
 use asked::Asked;
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
 use featherbench_bench::{
-    ContactSolver, Engine, Evaluation, Identity, Import, ImportVariant, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, RodSolver, Route,
+    ContactSolver, Engine, Evaluation, Identity, Import, ImportVariant, LoopSolver, NoAnswer, Quantity, Rewritten, Robot, RobotFile, RodSolver, Route,
     SceneEngine, SemidefiniteSolver, Stepper,
 };
 use featherbench_protocol::{Block, Clock, Limits, Message, Process, SystemClock, VERSION};
@@ -28,6 +28,7 @@ use featherbench_robots::StateBatch;
 use hello::Hello;
 use serde_json::{Value, json};
 use std::ffi::OsString;
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -175,6 +176,17 @@ impl Engine for Oracle {
     fn variants(&self, file: &RobotFile) -> Result<Vec<ImportVariant>, NoAnswer> {
         let answer = self.session()?.ask(about("variants", file)?, Vec::new())?;
         import::variants(&answer).map_err(|message| NoAnswer::Failed(format!("the engine's variants: {message}")))
+    }
+
+    fn rewrite(&self, file: &RobotFile, into: &Path) -> Result<Vec<Rewritten>, NoAnswer> {
+        if !self.hello.writes {
+            return Ok(Vec::new());
+        }
+        let into = into.to_str().ok_or_else(|| NoAnswer::Failed("the folder's path is not UTF-8; rename it".into()))?;
+        let mut question = about("rewrite", file)?;
+        question["into"] = into.into();
+        let answer = self.session()?.ask(question, Vec::new())?;
+        import::rewritten(&answer).map_err(|message| NoAnswer::Failed(format!("what the engine wrote: {message}")))
     }
 
     fn prepare<'a>(

@@ -31,6 +31,9 @@ pub struct DescribedEngine {
     /// The formats that its own parser reads.
     #[serde(default)]
     pub reads: Vec<FileFormat>,
+    /// Whether it writes files again.
+    #[serde(default)]
+    pub writes: bool,
     /// Whether its answers are kept in `datasets/recorded`.
     #[serde(default)]
     pub recorded: bool,

@@ -13,12 +13,13 @@ pub(crate) mod stepper;
 pub(crate) mod with_residual;
 
 use crate::{
-    ContactSolver, Evaluation, Import, ImportVariant, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, RodSolver, SceneEngine,
+    ContactSolver, Evaluation, Import, ImportVariant, LoopSolver, NoAnswer, Quantity, Rewritten, Robot, RobotFile, RodSolver, SceneEngine,
     SemidefiniteSolver, Stepper,
 };
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// The identity of an engine.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -148,6 +149,15 @@ pub trait Engine: Send + Sync {
     /// # Errors
     /// [`NoAnswer`] when the engine does not accept the file.
     fn variants(&self, _: &RobotFile) -> Result<Vec<ImportVariant>, NoAnswer> {
+        Ok(Vec::new())
+    }
+
+    /// Reads a file and writes it again by each of its writers, into a folder: what a round trip keeps and loses. Engines without a writer
+    /// write none.
+    ///
+    /// # Errors
+    /// [`NoAnswer`] when the engine does not accept the file.
+    fn rewrite(&self, _: &RobotFile, _: &Path) -> Result<Vec<Rewritten>, NoAnswer> {
         Ok(Vec::new())
     }
 

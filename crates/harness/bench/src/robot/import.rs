@@ -3,6 +3,7 @@
 use featherbench_formats::neutral;
 use featherbench_model::Description;
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// The result of a file's import by an engine's own parser.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +29,15 @@ pub struct ImportVariant {
     pub edits: u64,
     /// The robot, canonical. It has no body if nothing moves.
     pub description: Description,
+}
+
+/// A file that a writer made of another one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rewritten {
+    /// The writer.
+    pub by: String,
+    /// The file, or why there is none.
+    pub file: Result<PathBuf, String>,
 }
 
 /// An edit by a parser, or an element that it did not import.

@@ -26,6 +26,8 @@ pub(crate) struct Hello {
     pub(crate) timed: Methods,
     /// Whether it can relocate its data in memory.
     pub(crate) relocate: bool,
+    /// Whether it writes files again.
+    pub(crate) writes: bool,
     pub(crate) steps: Option<Steps>,
     pub(crate) loops: Option<Loops>,
     pub(crate) contact_solvers: Vec<String>,

@@ -1,10 +1,11 @@
 //! The answer to the operation `import`: what an engine's own parser has made of a file.
 
 use super::folders::without_folders;
-use featherbench_bench::{Import, ImportNote, ImportVariant};
+use featherbench_bench::{Import, ImportNote, ImportVariant, Rewritten};
 use featherbench_model::{BodyDescription, Description};
 use featherbench_protocol::Message;
 use serde_json::Value;
+use std::path::PathBuf;
 
 /// The result in an answer to `import`.
 ///
@@ -46,6 +47,25 @@ pub(crate) fn reading(answer: &Message) -> Result<Import, String> {
 pub(crate) fn variants(answer: &Message) -> Result<Vec<ImportVariant>, String> {
     let listed = answer.header.get("variants").and_then(Value::as_array).ok_or("there are no variants")?;
     listed.iter().map(variant).collect()
+}
+
+/// The files in an answer to `rewrite`.
+///
+/// # Errors
+/// A sentence, when one has no writer, or neither a file nor a reason.
+pub(crate) fn rewritten(answer: &Message) -> Result<Vec<Rewritten>, String> {
+    let listed = answer.header.get("written").and_then(Value::as_array).ok_or("there is no list `written`")?;
+    let one = |given: &Value| {
+        let text = |key: &str| given.get(key).and_then(Value::as_str);
+        let by = text("by").ok_or("one has no `by`")?.to_owned();
+        let file = match (text("file"), text("reason")) {
+            (Some(file), None) => Ok(PathBuf::from(file)),
+            (None, Some(reason)) => Err(without_folders(reason)),
+            _ => return Err(format!("{by} has not one of `file` and `reason`")),
+        };
+        Ok(Rewritten { by, file })
+    };
+    listed.iter().map(one).collect()
 }
 
 fn parsed(model: &Value) -> Result<Description, String> {

@@ -1,0 +1,1 @@
+"""The converters of URDF and MJCF to USD, as writers."""
