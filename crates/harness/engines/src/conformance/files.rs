@@ -9,8 +9,8 @@ use super::values::Scene;
 use super::{Standing, robots};
 use crate::oracle::hello::Methods;
 use featherbench_bench::{FileBase, FileFormat, Import, Quantity, Robot};
-use featherbench_formats::{OnLoss, mjcf, urdf};
-use featherbench_model::{BodyDescription, Description, JointType, Placement};
+use featherbench_formats::{OnLoss, mjcf, urdf, usd};
+use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Placement};
 use featherbench_protocol::Message;
 use featherbench_results::ModelOrigin;
 use featherbench_robots::Family;
@@ -27,7 +27,7 @@ const AS_READ: [Quantity; 6] = [
     Quantity::KineticEnergy,
 ];
 /// The causes that a note may give.
-const CAUSES: [&str; 20] = [
+const CAUSES: [&str; 23] = [
     "mass_edited",
     "com_edited",
     "inertia_edited",
@@ -46,6 +46,9 @@ const CAUSES: [&str; 20] = [
     "mimic_otherwise",
     "mimic_dropped",
     "gravity_ignored",
+    "not_a_rotation",
+    "not_a_mass",
+    "no_joints",
     "not_compared",
     "warning",
 ];
@@ -73,6 +76,49 @@ const FLOATING: &str = r#"<robot name="floating">
 </robot>
 "#;
 
+/// The robot of [`dyadic`].
+const SDF: &str = r#"<sdf version="1.6"><model name="dyadic">
+  <link name="upper"><pose>0 0 0.5 0 0 0</pose>
+    <inertial><pose>0.25 0 -0.125 0 0 0</pose><mass>2</mass>
+      <inertia><ixx>0.5</ixx><ixy>0</ixy><ixz>0</ixz><iyy>0.625</iyy><iyz>0</iyz><izz>0.25</izz></inertia></inertial></link>
+  <link name="lower"><pose>0.5 0.25 0 0 0 0</pose>
+    <inertial><pose>0 0.125 0.25 0 0 0</pose><mass>0.5</mass>
+      <inertia><ixx>0.125</ixx><ixy>0</ixy><ixz>0</ixz><iyy>0.25</iyy><iyz>0</iyz><izz>0.1875</izz></inertia></inertial></link>
+  <joint name="shoulder" type="revolute"><parent>world</parent><child>upper</child><axis><xyz>0 1 0</xyz></axis></joint>
+  <joint name="slide" type="prismatic"><parent>upper</parent><child>lower</child><axis><xyz>1 0 0</xyz></axis></joint>
+</model></sdf>
+"#;
+
+/// A robot whose numbers single precision holds.
+fn dyadic() -> Description {
+    let body = |name: &str, parent, joint: &str, kind, translation, (mass, com, inertia): (f64, [f64; 3], [f64; 6])| BodyDescription {
+        name: name.into(),
+        parent,
+        joint: JointDescription {
+            name: joint.into(),
+            kind,
+            placement: Placement { translation, ..Placement::default() },
+            ..JointDescription::default()
+        },
+        mass,
+        com,
+        inertia,
+    };
+    let turns = JointType::Revolute { axis: [0.0, 1.0, 0.0] };
+    let slides = JointType::Prismatic { axis: [1.0, 0.0, 0.0] };
+    let upper = (2.0, [0.25, 0.0, -0.125], [0.5, 0.0, 0.0, 0.625, 0.0, 0.25]);
+    let lower = (0.5, [0.0, 0.125, 0.25], [0.125, 0.0, 0.0, 0.25, 0.0, 0.1875]);
+    Description {
+        name: "dyadic".into(),
+        gravity: [0.0, 0.0, -9.81],
+        bodies: vec![
+            body("upper", None, "shoulder", turns, [0.0, 0.0, 0.5], upper),
+            body("lower", Some(0), "slide", slides, [0.5, 0.25, -0.5], lower),
+        ],
+        ..Description::default()
+    }
+}
+
 /// A file that we wrote.
 struct Written {
     shows: &'static str,
@@ -92,7 +138,7 @@ fn tree(kind: &str, base: &str) -> Result<Description, String> {
     Ok(robot)
 }
 
-fn files() -> Result<[Written; 3], String> {
+fn files() -> Result<[Written; 5], String> {
     let fixed = Description { gravity: [0.0, 0.0, -9.81], ..tree("prismatic", "fixed")? };
     let (fixed_text, _) = urdf::to_string(&fixed, OnLoss::Refuse).map_err(|error| error.to_string())?;
     let floating = urdf::Options { base: urdf::Base::Floating, ..urdf::Options::default() };
@@ -106,6 +152,7 @@ fn files() -> Result<[Written; 3], String> {
         }
     }
     let (scene_text, _) = mjcf::to_string(&scene, OnLoss::Refuse).map_err(|error| error.to_string())?;
+    let (stage, _) = usd::to_string(&dyadic(), OnLoss::Refuse).map_err(|error| error.to_string())?;
     let (urdf, mjcf) = (FileFormat::Urdf, FileFormat::Mjcf);
     Ok([
         Written {
@@ -125,6 +172,8 @@ fn files() -> Result<[Written; 3], String> {
             robot: free,
         },
         Written { shows: "an MJCF", name: "scene.xml", format: mjcf, base: FileBase::Fixed, text: scene_text, robot: scene },
+        Written { shows: "an SDF", name: "dyadic.sdf", format: FileFormat::Sdf, base: FileBase::Fixed, text: SDF.into(), robot: dyadic() },
+        Written { shows: "a USD", name: "dyadic.usda", format: FileFormat::Usd, base: FileBase::Fixed, text: stage, robot: dyadic() },
     ])
 }
 
@@ -283,7 +332,11 @@ fn difference(one: &BodyDescription, other: &BodyDescription) -> Option<&'static
 
 /// Files that are invalid, and whether the oracle works afterwards.
 fn invalid(exchange: &mut Exchange, format: FileFormat, folder: &Path) -> Result<(), String> {
-    let root = if format == FileFormat::Urdf { "robot" } else { "mujoco" };
+    let root = match format {
+        FileFormat::Urdf => "robot",
+        FileFormat::Mjcf => "mujoco",
+        FileFormat::Sdf | FileFormat::Usd => "sdf",
+    };
     let broken = format!("<{root} name=\"broken\"><unclosed></{root}>");
     let nested = format!("<{root} name=\"nested\">{}{}</{root}>", "<a>".repeat(NESTED), "</a>".repeat(NESTED));
     for (what, text) in [
