@@ -200,6 +200,9 @@ pub struct CompareArgs {
     /// All files hold one robot, whatever its parts are called: compare each with the first.
     #[arg(long)]
     pub one: bool,
+    /// Write a copy of a URDF here in which inertials are mended that engines read otherwise or refuse, and compare the copy.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["round_trip", "json"])]
+    pub fix: Option<PathBuf>,
     /// Write the file again by every writer, ours and those of engines and converters, and compare what is read from each.
     #[arg(long, conflicts_with = "one")]
     pub round_trip: bool,

@@ -1,6 +1,7 @@
 //! `featherbench compare`: do the engines read a robot's file alike, and if not, where and why?
 
 pub mod compared;
+pub mod fix;
 pub mod forms;
 pub mod other_file;
 pub mod outcome;
@@ -155,6 +156,14 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     }
     if !bad.is_empty() {
         return Err(ended(&bad));
+    }
+    if let Some(copy) = &args.fix
+        && fix::write(&robots, &records, copy)?
+    {
+        say!("\nthe copy:");
+        drop(opened);
+        let again = CompareArgs { files: vec![copy.clone()], fix: None, out: Some(folder.join("mended")), ..args.clone() };
+        return compare(root, &again);
     }
     if unmet.is_empty() {
         Ok(())

@@ -45,6 +45,7 @@ pub fn agrees(engine: &Oracle) {
         "ur5",
         "anymal_c",
     ];
+    let mut asked = 0;
     let rounding = if engine.identity().scalar() == "f32" { f64::from(f32::EPSILON) / f64::EPSILON } else { 1.0 };
     for words in words {
         let upright = native::robot(words, 12);
@@ -57,13 +58,16 @@ pub fn agrees(engine: &Oracle) {
             // floating robot is a known deviation.
             let found = native::compare(engine, &robot, if floats { &["coriolis_and_mass_matrices"] } else { &[] });
             let answered = found.iter().filter(|found| found.share.is_ok()).count();
-            assert!(answered >= 5, "{words}: {found:?}");
+            // Some have a fixed base alone.
+            assert!(answered >= 3 || answered == 0 && floats, "{words}: {found:?}");
+            asked += usize::from(answered > 0);
             for native::Found { quantity, method, share } in found {
                 let Ok(share) = share else { continue };
                 assert!(share <= rounding, "{words} {gravity:?} {} by {method}: {share} of its tolerance, at most {rounding}", quantity.name());
             }
         }
     }
+    assert!(asked >= 6, "{asked} robots were answered");
 }
 
 /// iDynTree's rate of M of a floating robot is not dM/dt, and so its Coriolis matrix is another one. Of a fixed base both are right.

@@ -159,3 +159,71 @@ pub fn limits(_: &Path) -> Outcome {
         .expect(0, &["DART is asked about 1500 bodies at most, and these are 160", "leave it out with --engines: DART is asked"]);
     Ok(())
 }
+
+/// An arm of two links; its upper arm has the words of an inertial.
+fn arm(inertial: &str) -> String {
+    let link = |name: &str, inside: &str| format!("  <link name=\"{name}\">{inside}</link>\n");
+    let joint = |name: &str, parent: &str, child: &str, z: f64| {
+        let place = format!("<origin xyz=\"0.1 0 {z}\" rpy=\"0.3 -0.2 0.1\"/><parent link=\"{parent}\"/><child link=\"{child}\"/>");
+        format!("  <joint name=\"{name}\" type=\"continuous\">{place}<axis xyz=\"0 0.6 0.8\"/></joint>\n")
+    };
+    let plain = r#"<inertial><mass value="0.7"/><inertia ixx="0.02" ixy="0" ixz="0" iyy="0.03" iyz="0" izz="0.04"/></inertial>"#;
+    let links = link("base", "") + &link("upper", inertial) + "  <!-- kept -->\n" + &link("lower", plain);
+    format!("<robot name=\"arm\">\n{links}{}{}</robot>\n", joint("shoulder", "base", "upper", 0.5), joint("elbow", "upper", "lower", 0.4))
+}
+
+const TURNED: &str = r#"<inertial><origin xyz="0.1 0.2 0.3" rpy="0.4 0.5 0.6"/><mass value="2"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.25"/></inertial>"#;
+
+/// A second file of a robot stands in the place of an engine: in another format it is alike, and a changed number is named.
+pub fn two_files(_: &Path) -> Outcome {
+    let sandbox = Sandbox::new();
+    let text = arm(TURNED);
+    let first = sandbox.write("arm.urdf", &text);
+    let heavier = sandbox.write("heavier.urdf", &text.replace("<mass value=\"2\"/>", "<mass value=\"2.5\"/>"));
+    let ended = compare(&[first.clone(), heavier], &["--engines", "pinocchio"], &sandbox.path("heavier"));
+    ended.expect(1, &["heavier.urdf", "upper", "mass"]);
+    assert_eq!(differences(&sandbox.path("heavier"), "heavier.urdf"), [("mass".to_owned(), "number".to_owned())]);
+    assert_eq!(differences(&sandbox.path("heavier"), "pinocchio"), []);
+
+    // The same robot in another format, with other names.
+    let copy = sandbox.path("copy.xml");
+    sandbox.run(&["gen", "urdf", "--file", "arm.urdf", "--out", "copy.xml"]).expect(0, &[]);
+    let renamed = std::fs::read_to_string(&copy).unwrap().replace("upper", "link_1").replace("elbow", "joint_2").replace("lower", "link_2");
+    std::fs::write(&copy, renamed.replace("shoulder", "joint_1")).unwrap();
+    let ended = compare(&[first.clone(), copy], &["--engines", "mujoco", "--one"], &sandbox.path("copy"));
+    ended.expect(0, &["copy.xml"]);
+    assert_eq!(differences(&sandbox.path("copy"), "copy.xml"), []);
+
+    // Two robots are two robots.
+    let other = sandbox.write("other.urdf", &arm(TURNED).replace("continuous", "prismatic").replace("shoulder", "a").replace("elbow", "b"));
+    let ended = compare(&[first, other], &["--engines", "pinocchio"], &sandbox.path("other"));
+    assert!(!ended.output.contains("other.urdf "), "{}", ended.output);
+    Ok(())
+}
+
+/// A round trip names each writer; those of this robot lose nothing that enters the dynamics.
+pub fn round_trip(_: &Path) -> Outcome {
+    let sandbox = Sandbox::new();
+    let file = sandbox.write("arm.urdf", &arm(TURNED));
+    let ended = compare(&[file], &["--engines", "mujoco", "--round-trip"], &sandbox.path("trip"));
+    ended.expect(0, &["our URDF", "our MJCF", "MjSpec.to_xml", "mj_saveLastXML"]);
+    let (_, rows) = featherbench_results::read_run(&sandbox.path("trip")).unwrap();
+    for writer in ["our URDF", "our MJCF", "MjSpec.to_xml", "mj_saveLastXML"] {
+        let told: Vec<_> = rows.iter().filter(|row| row.engine == writer && row.metric == "differences").collect();
+        assert_eq!(told.len(), 1, "{writer}");
+    }
+    Ok(())
+}
+
+/// A copy has what engines agree about: an inertia that no body has gets the nearest one, a fixed link's inertia without mass goes.
+pub fn fixes(_: &Path) -> Outcome {
+    let sandbox = Sandbox::new();
+    let wrong = TURNED.replace("izz=\"0.25\"", "izz=\"0.9\"");
+    let file = sandbox.write("arm.urdf", &arm(&wrong));
+    let copy = sandbox.path("mended.urdf");
+    let ended = compare(&[file], &["--engines", "pinocchio,mujoco,drake", "--fix", copy.to_str().unwrap()], &sandbox.path("fix"));
+    ended.expect(0, &["arm.urdf:3: link 'upper': no mass distribution has this inertia; the nearest", "the copy:"]);
+    let mended = std::fs::read_to_string(&copy).unwrap();
+    assert!(mended.contains("<!-- kept -->") && mended.lines().count() >= arm(&wrong).lines().count(), "{mended}");
+    Ok(())
+}

@@ -24,6 +24,7 @@ mod reduced;
 #[path = "../support/mod.rs"]
 mod support;
 mod told;
+mod usd;
 mod written;
 
 use featherbench_bench::{Engine, FileBase, FileContent, FileFormat, RobotFile};
@@ -70,6 +71,9 @@ fn main() -> ExitCode {
         ("a robot beyond an engine's limits is told", || with_engines(compared::limits)),
         ("what a file says is compared or told by name", || with_engines(told::by_name)),
         ("an engine that drops a mimic is told", || with_engines(told::mimics)),
+        ("a second file of a robot is compared with the first", || with_engines(compared::two_files)),
+        ("a round trip names each writer", || with_engines(compared::round_trip)),
+        ("a copy is mended and compared again", || with_engines(compared::fixes)),
         ("engines read alike the URDF that we write", || with_engines(written::urdf_read_alike)),
         ("a browser clicks through the report", browser),
         ("a pendulum in C agrees with our kernels", native::pendulum_answers),
@@ -106,6 +110,14 @@ fn main() -> ExitCode {
         ("MuJoCo Warp agrees, in single precision", || alone::with("mujoco_warp", alone::agrees)),
         ("Newton conforms, in single precision", || alone::conforms("newton", &[])),
         ("Newton agrees, in single precision", || alone::with("newton", alone::agrees)),
+        ("MJX conforms, in single precision", || alone::conforms("mjx", &[])),
+        ("PyBullet conforms", || alone::conforms("pybullet", &[])),
+        ("PyBullet agrees", || alone::with("pybullet", alone::agrees)),
+        ("Exudyn conforms", || alone::conforms("exudyn", &[])),
+        ("Exudyn agrees", || alone::with("exudyn", alone::agrees)),
+        ("OpenUSD conforms", || alone::conforms("openusd", &["a USD"])),
+        ("USD that we write is read back", usd::read_back),
+        ("Newton reads USD that we write", usd::newton_reads_it),
         ("the lesson's arm in Rust is our kernels' arm", || lesson::agrees_in(Language::Rust)),
         ("the lesson's arm in C is our kernels' arm", || lesson::agrees_in(Language::C)),
         ("the lesson's arm in Python is our kernels' arm", || lesson::agrees_in(Language::Python)),

@@ -31,12 +31,14 @@ mod angles;
 mod elements;
 mod error;
 mod links;
+mod mend;
 mod tree;
 mod write;
 mod xml;
 
 pub use error::{UrdfError, UrdfProblem};
 pub use links::{BadValue, FileInertial, FileLink, Mimic};
+pub use mend::Mended;
 pub use write::{to_string, write};
 
 use crate::{TextError, text};
