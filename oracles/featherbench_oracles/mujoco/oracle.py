@@ -9,7 +9,16 @@ from pathlib import Path
 import mujoco as mj
 import numpy as np
 
-from featherbench_oracles.abilities import HasContactSteps, HasLoops, HasRods, HasSceneDerivatives, HasScenes, HasVariants, ReadsFiles, WritesFiles
+from featherbench_oracles.abilities import (
+    HasContactSteps,
+    HasLoops,
+    HasRods,
+    HasSceneDerivatives,
+    HasScenes,
+    HasVariants,
+    ReadsFiles,
+    WritesFiles,
+)
 from featherbench_oracles.abilities.derivatives import Differentiated
 from featherbench_oracles.core.algebra import Array
 from featherbench_oracles.core.change import CoordinateChange

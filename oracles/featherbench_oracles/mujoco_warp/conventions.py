@@ -13,7 +13,25 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from featherbench_oracles.core.algebra import Array
-from featherbench_oracles.core.conventions import ABOUT_ORIGIN, ALPHA, COM, GRAVITY, MASS, SINGLE, WXYZ, A, Claims, P, R, V, W, X, Z, turned
+from featherbench_oracles.core.conventions import (
+    ABOUT_ORIGIN,
+    ALPHA,
+    COM,
+    GRAVITY,
+    MASS,
+    SINGLE,
+    WXYZ,
+    A,
+    Claim,
+    Claims,
+    P,
+    R,
+    V,
+    W,
+    X,
+    Z,
+    turned,
+)
 from featherbench_oracles.core.conventions import claim as claim_in_double
 from featherbench_oracles.mujoco.conventions import BALL, FREE, HINGE, SLIDE, mj_robot
 
@@ -108,3 +126,19 @@ def mujoco_warp_precision() -> Claims:
     world = World(mj_robot((HINGE, Z))[0], [0.1], [0.0])
     yield claim_in_double(world.get("qpos"), np.array([0.1], np.float32), [0.1 + 0.05])
     yield claim_in_double([world.data.qfrc_bias.numpy().itemsize], [4], [8])
+
+
+def mujoco_warp_batch() -> Claims:
+    """A world among 4096 has the bits that it has alone, wherever it stands."""
+    model, _ = mj_robot((HINGE, X), (HINGE, Z))
+    count, state = 4096, np.array([0.3, 0.2, 0.5, -0.4], np.float32)
+    states = np.random.default_rng(1).uniform(-1, 1, (count, 4)).astype(np.float32)
+    states[[0, 1777, count - 1]] = state
+    alone = World(model, state[:2], state[2:]).get("qfrc_bias")
+    held, worlds = mjw.put_model(model), mjw.put_data(model, mj.MjData(model), nworld=count)
+    worlds.qpos.assign(np.ascontiguousarray(states[:, :2]))
+    worlds.qvel.assign(np.ascontiguousarray(states[:, 2:]))
+    mjw.fwd_position(held, worlds)
+    mjw.fwd_velocity(held, worlds)
+    among = np.array(worlds.qfrc_bias.numpy(), float)
+    yield Claim(among[[0, 1777, count - 1]], np.stack([alone] * 3), (among[[1, 2, 3]],), close=0.0)

@@ -20,6 +20,7 @@ from featherbench_oracles.core.conventions import (
     SINGLE,
     WRONG_R,
     XYZW,
+    Claim,
     Claims,
     P,
     R,
@@ -117,3 +118,30 @@ def newton_inertia() -> Claims:
 def newton_precision() -> Claims:
     """All of its numbers are single."""
     yield claim_in_double([World("revolute", [0.3], [0.0], axis=newton.Axis.X).model.body_mass.numpy().itemsize], [4], [8])
+
+
+def newton_batch() -> Claims:
+    """A world among 4096 has the bits that it has alone, wherever it stands."""
+    count, seen = 4096, [0, 1777, 4095]
+    one = newton.ModelBuilder(gravity=tuple(GRAVITY.tolist()))
+    joints = []
+    for k in range(2):
+        one.add_link(mass=MASS, com=tuple(COM.tolist()), inertia=wp.mat33(*MOMENTS.ravel().tolist()), lock_inertia=True)
+        joints.append(one.add_joint_revolute(k - 1, k, parent_xform=TURNED, axis=wp.vec3(*AXIS.tolist())))
+    one.add_articulation(joints)
+
+    def masses(worlds: int, states: Array) -> Array:
+        builder = newton.ModelBuilder(gravity=tuple(GRAVITY.tolist()))
+        builder.replicate(one, worlds)
+        model = builder.finalize()
+        state = model.state()
+        state.joint_q.assign(states.astype(np.float32).ravel())
+        newton.eval_fk(model, state.joint_q, state.joint_qd, state)
+        held = wp.zeros((worlds, 2, 2), dtype=wp.float32)
+        newton.eval_mass_matrix(model, state, held)
+        return np.array(held.numpy(), float)
+
+    states = np.random.default_rng(1).uniform(-1, 1, (count, 2))
+    states[seen] = [0.3, 0.2]
+    among, alone = masses(count, states), masses(1, np.array([[0.3, 0.2]]))
+    yield Claim(among[seen], np.concatenate([alone] * 3), (among[[1, 2, 3]],), close=0.0)
