@@ -127,7 +127,7 @@ def newton_batch() -> Claims:
     joints = []
     for k in range(2):
         one.add_link(mass=MASS, com=tuple(COM.tolist()), inertia=wp.mat33(*MOMENTS.ravel().tolist()), lock_inertia=True)
-        joints.append(one.add_joint_revolute(k - 1, k, parent_xform=TURNED, axis=wp.vec3(*AXIS.tolist())))
+        joints.append(one.add_joint_revolute(k - 1, k, parent_xform=TURNED, axis=wp.vec3(*(AXIS, np.eye(3)[0])[k].tolist())))
     one.add_articulation(joints)
 
     def masses(worlds: int, states: Array) -> Array:
