@@ -6,6 +6,7 @@
 //! - [`sweep`]: what errors do drawn robots have, by depth, mass ratio, offset, speed and kind of joint?
 //! - [`conditioning`]: how does κ(M) grow, and does it matter?
 //! - [`derivatives`]: which engine's derivatives are right, on which joint, and what does the step of finite differences cost?
+//! - [`invariance`]: what must not change an answer, and does?
 //! - [`precision`]: is single precision good enough for a robot?
 //! - [`steps`]: how does the acceleration of a step approach the true one, and how do steps change the energy?
 //! - [`reproductions`]: do the engines' known deviations still exist, and in their known size?
@@ -16,6 +17,7 @@ pub mod agreement;
 pub mod conditioning;
 pub mod derivatives;
 pub mod import;
+pub mod invariance;
 pub mod precision;
 pub mod repeatability;
 pub mod reproductions;
@@ -27,6 +29,7 @@ pub use agreement::Agreement;
 pub use conditioning::Conditioning;
 pub use derivatives::Derivatives;
 pub use import::Import;
+pub use invariance::Invariance;
 pub use precision::Precision;
 pub use repeatability::Repeatability;
 pub use reproductions::Reproductions;

@@ -29,6 +29,7 @@ const STUDIES: &[&Entry] = &[
     &comparison::conditioning::ENTRY,
     &comparison::derivatives::ENTRY,
     &comparison::precision::ENTRY,
+    &comparison::invariance::ENTRY,
     &answers::contact::ENTRY,
     &answers::continuum::ENTRY,
     &answers::scenes::ENTRY,
