@@ -34,11 +34,8 @@ pub fn write(robots: &[Robot], records: &[Row], out: &Path) -> Result<bool, Fail
     let name = file.path.display().to_string();
     let parsed = Parsed::of(text.as_bytes(), &name).map_err(|error| Fail::input(error.to_string()))?;
     let causes = |link: &FileLink| causes(&robot.description, records, &link.name);
-    let changes: Vec<(String, FileInertial, String)> = parsed
-        .links(WATER)
-        .iter()
-        .filter_map(|link| change(link, &causes(link)).map(|(to, why)| (link.name.clone(), to, why)))
-        .collect();
+    let changes: Vec<(String, FileInertial, String)> =
+        parsed.links(WATER).iter().filter_map(|link| change(link, &causes(link)).map(|(to, why)| (link.name.clone(), to, why))).collect();
     let inertials: Vec<(String, FileInertial)> = changes.iter().map(|(link, to, _)| (link.clone(), *to)).collect();
     let (text, mended) = parsed.with_inertials(&inertials);
     for one in &mended {

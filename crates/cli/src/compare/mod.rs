@@ -23,7 +23,8 @@ use crate::{message, report, run};
 use ::featherbench_results::{Verdict, atomic_write};
 use featherbench_bench::run::{Opening, Run};
 use featherbench_bench::{
-    Cell, Context, DescribedEngine, Engine, Engines, FileBase, FileContent, FileFormat, OWN, Robot, RobotFile, RobotSource, hash, provenance,
+    Cell, Context, DescribedEngine, Engine, Engines, FileBase, FileContent, FileFormat, OWN, Robot, RobotFile, RobotSource, hash,
+    provenance,
 };
 use featherbench_comparison::import::{answers, overflow, singular};
 use featherbench_comparison::{Agreement, Import};
@@ -242,7 +243,9 @@ fn engines(root: &Root, args: &CompareArgs, described: &Engines, files: &[Source
     let Some(named) = &args.engines else {
         let formats: BTreeSet<FileFormat> = files.iter().map(Source::format).collect();
         let asked = |engine: &&DescribedEngine| {
-            if args.round_trip && (engine.writes || engine.name == FileFormat::Usd.reference() || engine.name == FileFormat::Mjcf.reference()) {
+            if args.round_trip
+                && (engine.writes || engine.name == FileFormat::Usd.reference() || engine.name == FileFormat::Mjcf.reference())
+            {
                 return true;
             }
             formats.iter().any(|format| {

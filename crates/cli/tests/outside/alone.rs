@@ -63,7 +63,11 @@ pub fn agrees(engine: &Oracle) {
             asked += usize::from(answered > 0);
             for native::Found { quantity, method, share } in found {
                 let Ok(share) = share else { continue };
-                assert!(share <= rounding, "{words} {gravity:?} {} by {method}: {share} of its tolerance, at most {rounding}", quantity.name());
+                assert!(
+                    share <= rounding,
+                    "{words} {gravity:?} {} by {method}: {share} of its tolerance, at most {rounding}",
+                    quantity.name()
+                );
             }
         }
     }

@@ -13,7 +13,8 @@ use featherbench_robots::Family;
 fn robots() -> Vec<Description> {
     let joints = ["revolute", "prismatic", "spherical", "mixed"].map(|kind| format!("joints:kind={kind},base=fixed,armature=false"));
     let trees = (1..6).map(|seed| format!("tree:n=9,seed={seed},spread=0.4"));
-    let others = ["chain:n=7,layout=spatial", "humanoid", "quadruped", "hand", "joints:kind=revolute,base=free,armature=false"].map(String::from);
+    let others =
+        ["chain:n=7,layout=spatial", "humanoid", "quadruped", "hand", "joints:kind=revolute,base=free,armature=false"].map(String::from);
     let words: Vec<String> = joints.into_iter().chain(trees).chain(others).collect();
     let robots = words.iter().filter_map(|words| Family::parse(words).ok()?.generate().ok());
     let held = |robot: &Description| robot.bodies.iter().all(|body| has(body.joint.kind));
@@ -55,7 +56,10 @@ pub fn newton_reads_it() -> Outcome {
             let ours = robot.canonical().unwrap();
             let read = engine.read(&written(&robot, folder.path())).unwrap();
             let found = Comparison::rounded(&ours, &read.description, &[], &read.notes, Precision::Single);
-            let felt: Vec<_> = found.differences().filter(|difference| difference.field.weight() == featherbench_comparison::import::Weight::Dynamics).collect();
+            let felt: Vec<_> = found
+                .differences()
+                .filter(|difference| difference.field.weight() == featherbench_comparison::import::Weight::Dynamics)
+                .collect();
             assert!(felt.is_empty(), "{words}: {felt:#?}");
         }
     })

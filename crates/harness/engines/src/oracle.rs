@@ -19,8 +19,8 @@ use crate::{request, shape};
 use asked::Asked;
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
 use featherbench_bench::{
-    ContactSolver, Engine, Evaluation, Identity, Import, ImportVariant, LoopSolver, NoAnswer, Quantity, Rewritten, Robot, RobotFile, RodSolver, Route,
-    SceneEngine, SemidefiniteSolver, Stepper,
+    ContactSolver, Engine, Evaluation, Identity, Import, ImportVariant, LoopSolver, NoAnswer, Quantity, Rewritten, Robot, RobotFile,
+    RodSolver, Route, SceneEngine, SemidefiniteSolver, Stepper,
 };
 use featherbench_protocol::{Block, Clock, Limits, Message, Process, SystemClock, VERSION};
 use featherbench_results::EngineSource;

@@ -25,7 +25,7 @@ mod quaternion;
 mod read;
 mod write;
 
-pub(crate) use quaternion::estimate;
 pub use contents::{Contents, contents};
+pub(crate) use quaternion::estimate;
 pub use read::{LIMIT, MjcfError, MjcfProblem, Note, import, read};
 pub use write::{to_string, write};

@@ -159,7 +159,8 @@ mod tests {
 
     #[test]
     fn an_inertia_that_is_right_stays() {
-        let right = FileInertial { mass: 1.0, com: [0.0; 3], rotation: Placement::default().rotation, inertia: [1.0, 0.0, 0.0, 1.0, 0.0, 2.0] };
+        let right =
+            FileInertial { mass: 1.0, com: [0.0; 3], rotation: Placement::default().rotation, inertia: [1.0, 0.0, 0.0, 1.0, 0.0, 2.0] };
         assert_eq!(right.nearest_consistent(), None);
         let turned = right.in_principal_axes().in_axes_of_link();
         assert!(turned.inertia.iter().zip(right.inertia).all(|(x, y)| (x - y).abs() < 1e-15));

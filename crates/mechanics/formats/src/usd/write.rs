@@ -93,7 +93,7 @@ fn joint(stage: &mut Stage, name: &str, joint: &JointDescription, ends: &[Option
         // The others gave an error before.
         _ => ("PhysicsSphericalJoint", None),
     };
-    let (token, turn) = axis.map_or((None, Placement::default().rotation), |axis| along(axis));
+    let (token, turn) = axis.map_or((None, Placement::default().rotation), along);
     let inner = Transform::new(Mat3::from_array(turn), Vec3::zero());
     let outer = joint.placement.to_transform().compose(&inner);
     stage.open(kind, name, &["NewtonJointAPI"]);
@@ -182,7 +182,9 @@ fn losses(robot: &Description) -> Vec<Loss> {
         }
     }
     losses.extend(robot.frames.iter().map(|frame| Loss { about: format!("frame '{}'", frame.name), reason: Reason::Frame }));
-    losses.extend(robot.loops.iter().map(|tie| Loss { about: format!("loop '{}'", tie.name), reason: Reason::Loop { kind: tie.kind.name() } }));
+    losses.extend(
+        robot.loops.iter().map(|tie| Loss { about: format!("loop '{}'", tie.name), reason: Reason::Loop { kind: tie.kind.name() } }),
+    );
     losses.extend(export::deforming(robot));
     losses.extend(export::residuals(robot));
     losses

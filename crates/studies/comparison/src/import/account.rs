@@ -55,14 +55,7 @@ pub(super) struct Parts<'a> {
 
 impl<'a> Parts<'a> {
     /// The links of body `i`: those that the file names; or those whose numbers in the file the parser's notes give; or the body itself.
-    pub fn new(
-        ours: &'a Description,
-        i: usize,
-        links: &[FileLink],
-        notes: &[&ImportNote],
-        reach: f64,
-        precision: Precision,
-    ) -> Self {
+    pub fn new(ours: &'a Description, i: usize, links: &[FileLink], notes: &[&ImportNote], reach: f64, precision: Precision) -> Self {
         let body = &ours.bodies[i];
         let itself = std::iter::once((body.name.as_str(), Transform::identity()));
         let fixed =

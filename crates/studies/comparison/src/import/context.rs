@@ -92,13 +92,7 @@ fn one_factor(ours: &Description, written: &[Option<BodyDescription>], tested: f
 }
 
 /// A floating base whose coordinates are those of another link: one that is fixed to our root, if the parser drops an empty root.
-fn other_root(
-    ours: &Description,
-    written: &[Option<BodyDescription>],
-    findings: &mut [SingleDifference],
-    reach: f64,
-    tested: f64,
-) {
+fn other_root(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [SingleDifference], reach: f64, tested: f64) {
     for (root, theirs) in written.iter().enumerate() {
         let Some(theirs) = theirs.as_ref().filter(|theirs| theirs.joint.kind == JointType::Free) else { continue };
         let Some(frame) = ours.frames.iter().find(|frame| frame.body == Some(root) && frame.name == theirs.name) else { continue };
@@ -119,13 +113,7 @@ fn other_root(
 
 /// The joints of one link are a chain of massless bodies before it. If the whole chain leads to the same place and its parts do not, the
 /// link's pose was put at another joint of the chain.
-fn between_joints(
-    ours: &Description,
-    written: &[Option<BodyDescription>],
-    findings: &mut [SingleDifference],
-    reach: f64,
-    tested: f64,
-) {
+fn between_joints(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [SingleDifference], reach: f64, tested: f64) {
     for end in 0..ours.bodies.len() {
         let mut chain = vec![end];
         while let Some(parent) = ours.bodies[chain[chain.len() - 1]].parent.filter(|&parent| ours.bodies[parent].mass == 0.0) {

@@ -31,8 +31,8 @@ pub(crate) mod words;
 
 pub use answers::{Answer, Largest, Loads, answers, repairs};
 pub use comparison::{Alone, Comparison, SingleDifference};
-pub use fields::Precision;
 pub use difference::{Cause, Class, Difference, Field, Weight};
+pub use fields::Precision;
 pub use overflow::overflow;
 pub use replay::Effect;
 pub use singular::singular;

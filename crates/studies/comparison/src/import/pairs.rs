@@ -58,8 +58,9 @@ impl Pairing {
             };
             // A body without a name in the file has one that each program invents: the same mass on the same joint is the same body.
             for i in (0..ours.bodies.len()).filter(|&i| ours.bodies[i].parent == above && invented(&ours.bodies[i])).collect::<Vec<_>>() {
-                let same =
-                    |&j: &usize| theirs.bodies[j].parent == theirs_above && !self.taken[j] && alike(&ours.bodies[i], &theirs.bodies[j], self.precision);
+                let same = |&j: &usize| {
+                    theirs.bodies[j].parent == theirs_above && !self.taken[j] && alike(&ours.bodies[i], &theirs.bodies[j], self.precision)
+                };
                 if self.partner[i].is_none()
                     && let Some(j) = (0..theirs.bodies.len()).find(same)
                 {

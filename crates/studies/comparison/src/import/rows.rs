@@ -2,7 +2,7 @@
 
 use super::replay::{Answers, Reference, Replay, carried, replay};
 use super::subtree::{SubTree, unexplained};
-use super::{Class, Comparison, Effect, Precision, LARGEST, READING, SingleDifference, VARIANTS, Weight, armature, as_read, bound, remedy};
+use super::{Class, Comparison, Effect, LARGEST, Precision, READING, SingleDifference, VARIANTS, Weight, armature, as_read, bound, remedy};
 use featherbench_bench::measure::worst;
 use featherbench_bench::{Cell, Context, Finished, Import, ImportVariant, NoAnswer, OWN, Outcome, Quantity, Robot};
 use featherbench_results::{Row, Verdict, canonical_json};
@@ -231,8 +231,10 @@ impl OfEngine<'_> {
         };
         let trees: Vec<Value> = trees.iter().map(tree).collect();
         let count = trees.len() as f64;
-        let row =
-            Row { params: self.params(json!({"unexplained": trees, "gate": bound(robot.depth, self.precision())})), ..self.row(self.cell, "unexplained") };
+        let row = Row {
+            params: self.params(json!({"unexplained": trees, "gate": bound(robot.depth, self.precision())})),
+            ..self.row(self.cell, "unexplained")
+        };
         self.context.gates.judge(row, count, 1.0)
     }
 }

@@ -10,7 +10,7 @@
 
 use featherbench_model::{BodyDescription, Description, JointType, Placement};
 use featherbench_robots::StateBatch;
-use featherbench_spatial::{Mat3, Sym3, Transform, Vec3};
+use featherbench_spatial::{Quaternion, Sym3, Transform, Vec3};
 
 /// The changes by name, in the order of pages.
 pub(super) const CHANGES: [&str; 5] = ["names", "order", "units", "mirror", "frames"];
@@ -120,11 +120,7 @@ fn mirrored(robot: &mut Description) {
 /// A frame of a body that has another angle and place for each body, and keeps the meaning of its joint's coordinates.
 fn gauge(k: usize, kind: JointType) -> Transform<f64> {
     let angle = 0.7 + 0.31 * k as f64;
-    let turn = |axis: [f64; 3], angle: f64| {
-        let (axis, (sine, cosine)) = (Vec3::from_array(axis), angle.sin_cos());
-        let skew = Mat3::skew(axis);
-        Mat3::identity() + skew * sine + (skew * skew) * (1.0 - cosine)
-    };
+    let turn = |axis: [f64; 3], angle: f64| Quaternion::exp(Vec3::from_array(axis) * angle).to_rotation();
     match kind {
         JointType::Revolute { axis } | JointType::Helical { axis, .. } => {
             Transform::new(turn(axis, angle), Vec3::from_array(axis) * (0.1 + 0.01 * k as f64))

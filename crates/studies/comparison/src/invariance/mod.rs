@@ -70,14 +70,13 @@ impl Study for Invariance {
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
         let itself = |cell: &Cell| {
-            let same = |other: &Cell| {
-                (&other.engine, &other.quantity, change_of(other)) == (&cell.engine, &cell.quantity, ITSELF)
-            };
+            let same = |other: &Cell| (&other.engine, &other.quantity, change_of(other)) == (&cell.engine, &cell.quantity, ITSELF);
             finished.iter().find(|(other, _)| same(other)).and_then(|(_, outcome)| outcome.answer().ok())
         };
         let mut rows = Vec::new();
         for (cell, outcome) in finished.iter().filter(|(cell, _)| change_of(cell) != ITSELF) {
-            let blank = Row { metric: "moved".into(), unit: "1".into(), reference: cell.engine.clone(), states: "all".into(), ..row(cell, robot) };
+            let blank =
+                Row { metric: "moved".into(), unit: "1".into(), reference: cell.engine.clone(), states: "all".into(), ..row(cell, robot) };
             let blank = context.gates.explain(blank);
             let values = match outcome.answer() {
                 Ok(values) => values,
