@@ -1,5 +1,6 @@
 """`ci/newest`: versions are read from `engines.toml` and written into a copy of it, and what pip cannot resolve is a warning."""
 
+import re
 import runpy
 import tomllib
 from pathlib import Path
@@ -53,7 +54,7 @@ def test_each_package_has_its_day(script: dict[str, Any], engines: str) -> None:
     described = script["packages"](engines)
     assert described["mujoco"]["released"] == "2026-11-06"
     assert described["faer"]["kind"] == "cargo_library"
-    assert len(described) == 12
+    assert len(described) == len(re.findall(r"^package = ", engines, re.M))
     assert "| mujoco | 4.0.0 | 2026-11-06 |" in script["days"](described)
 
 

@@ -25,12 +25,12 @@ def symmetric(six: Array) -> Array:
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
-def rotation(quaternion: Array) -> Array:
-    """Compute the rotation matrix of a quaternion: I + 2 (w [u]x + [u]x^2) / |quaternion|^2.
+def rotation(xyzw: Array) -> Array:
+    """Compute the rotation matrix of a quaternion: I + 2 (w [u]x + [u]x^2) / |xyzw|^2.
 
     Parameters
     ----------
-    quaternion : ndarray, shape (4,)
+    xyzw : ndarray, shape (4,)
         The numbers (x, y, z, w), of any length but 0.
 
     Returns
@@ -38,9 +38,35 @@ def rotation(quaternion: Array) -> Array:
     ndarray, shape (3, 3)
         The rotation, without unit.
     """
-    u, w = skew(quaternion[:3]), quaternion[3]
-    matrix: Array = np.eye(3) + (2 / (quaternion @ quaternion)) * (w * u + u @ u)
+    u, w = skew(xyzw[:3]), xyzw[3]
+    matrix: Array = np.eye(3) + (2 / (xyzw @ xyzw)) * (w * u + u @ u)
     return matrix
+
+
+def quaternion(matrix: Array) -> Array:
+    """Find the quaternion (x, y, z, w) of a rotation, from the row of 4 q q' with the largest diagonal entry.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (3, 3)
+        The rotation.
+
+    Returns
+    -------
+    ndarray, shape (4,)
+        Of length one.
+    """
+    (a, b, c), (d, e, f), (g, h, i) = matrix
+    squares = np.array(
+        [
+            [1 + a - e - i, b + d, c + g, h - f],
+            [b + d, 1 - a + e - i, f + h, c - g],
+            [c + g, f + h, 1 - a - e + i, d - b],
+            [h - f, c - g, d - b, 1 + a + e + i],
+        ]
+    )
+    row = squares[np.argmax(np.diag(squares))]
+    return np.array(row / np.linalg.norm(row))
 
 
 def skew(u: Array) -> Array:

@@ -8,7 +8,7 @@ import dartpy
 import numpy as np
 
 from featherbench_oracles.abilities.scenes import Body, Motion, Scene, Shape, Stepping, Variant
-from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.algebra import Array, quaternion
 
 # Of each variant the friction that its solver has.
 SOLVERS = {
@@ -61,27 +61,12 @@ def _skeleton(index: int, body: Body, scene: Scene) -> dartpy.dynamics.Skeleton:
     return skeleton
 
 
-def _quaternion(rotation: Array) -> Array:
-    """Find (x, y, z, w) of a rotation, by the largest of its four squares."""
-    squares = np.array([1 + 2 * rotation[k, k] - np.trace(rotation) for k in range(3)] + [1 + np.trace(rotation)])
-    largest = int(np.argmax(squares))
-    turn = np.empty(4)
-    if largest == 3:
-        turn[:3] = [rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0], rotation[1, 0] - rotation[0, 1]]
-        turn[3] = squares[3]
-    else:
-        i, j, k = largest, (largest + 1) % 3, (largest + 2) % 3
-        turn[i], turn[j], turn[k] = squares[i], rotation[i, j] + rotation[j, i], rotation[i, k] + rotation[k, i]
-        turn[3] = rotation[k, j] - rotation[j, k]
-    return turn / np.linalg.norm(turn)
-
-
 def _sample(nodes: list[dartpy.dynamics.BodyNode]) -> list[Array]:
     read = []
     for node in nodes:
         place = node.getWorldTransform()
         velocities = [np.ravel(node.getLinearVelocity()), np.ravel(node.getAngularVelocity())]
-        read.append(np.concatenate([np.ravel(place.translation()), _quaternion(place.rotation()), *velocities]))
+        read.append(np.concatenate([np.ravel(place.translation()), quaternion(place.rotation()), *velocities]))
     return read
 
 

@@ -8,10 +8,9 @@ from __future__ import annotations
 import newton
 import warp as wp
 
-from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.algebra import Array, quaternion
 from featherbench_oracles.core.protocol import Unsupported
 from featherbench_oracles.core.robot import Description, Joint
-from featherbench_oracles.newton.coordinates import quaternion
 
 wp.config.log_level = 30  # warnings: its kernels' names are no news
 

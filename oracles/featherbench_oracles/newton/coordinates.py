@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from featherbench_oracles.core.algebra import Array, rotation, skew
+from featherbench_oracles.core.algebra import Array, quaternion, rotation, skew
 from featherbench_oracles.core.change import CoordinateChange
 from featherbench_oracles.core.robot import Description
 
@@ -31,32 +31,6 @@ def to_engine_q(robot: Description, q: Array) -> Array:
         if joint.type == "spherical":
             held[joint.q] /= np.linalg.norm(held[joint.q])
     return held
-
-
-def quaternion(matrix: Array) -> Array:
-    """Find the quaternion (x, y, z, w) of a rotation, from the row of 4 q q' with the largest diagonal entry.
-
-    Parameters
-    ----------
-    matrix : ndarray, shape (3, 3)
-        The rotation.
-
-    Returns
-    -------
-    ndarray, shape (4,)
-        Of length one.
-    """
-    (a, b, c), (d, e, f), (g, h, i) = matrix
-    squares = np.array(
-        [
-            [1 + a - e - i, b + d, c + g, h - f],
-            [b + d, 1 - a + e - i, f + h, c - g],
-            [c + g, f + h, 1 - a - e + i, d - b],
-            [h - f, c - g, d - b, 1 + a + e + i],
-        ]
-    )
-    row = squares[np.argmax(np.diag(squares))]
-    return np.array(row / np.linalg.norm(row))
 
 
 def change_of_velocities(robot: Description, q: Array, v: Array, com: Array) -> CoordinateChange:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pybullet as pb
 
-from featherbench_oracles.core.algebra import Array
+from featherbench_oracles.core.algebra import Array, quaternion
 from featherbench_oracles.core.protocol import Unsupported
 from featherbench_oracles.core.robot import Description
 
@@ -81,18 +81,3 @@ def principal(inertia: Array) -> tuple[Array, Array]:
         return np.diag(inertia), np.eye(3)
     moments, axes = np.linalg.eigh(inertia)
     return moments, axes * np.sign(np.linalg.det(axes))
-
-
-def quaternion(matrix: Array) -> Array:
-    """Find the quaternion (x, y, z, w) of a rotation, from the row of 4 q q' with the largest diagonal entry."""
-    (a, b, c), (d, e, f), (g, h, i) = matrix
-    squares = np.array(
-        [
-            [1 + a - e - i, b + d, c + g, h - f],
-            [b + d, 1 - a + e - i, f + h, c - g],
-            [c + g, f + h, 1 - a - e + i, d - b],
-            [h - f, c - g, d - b, 1 + a + e + i],
-        ]
-    )
-    row = squares[np.argmax(np.diag(squares))]
-    return np.array(row / np.linalg.norm(row))

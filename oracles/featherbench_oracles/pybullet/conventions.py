@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pybullet as pb
 
-from featherbench_oracles.core.algebra import rotation
+from featherbench_oracles.core.algebra import quaternion, rotation
 from featherbench_oracles.core.conventions import AXIS, COM, GRAVITY, MASS, MOMENTS, Claims, about, claim
 from featherbench_oracles.core.reading import inertial
-from featherbench_oracles.pybullet.building import principal, quaternion
+from featherbench_oracles.pybullet.building import principal
 
 FILE = """<robot name="r"><link name="a"/><link name="b">{inertial}<collision><geometry><box size="1 2 3"/></geometry></collision></link>
 <joint name="j" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>"""

@@ -100,7 +100,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let folder = run::folder(root, args.out.as_deref(), NAME, started)?;
     let mut others = other_files(&robots, args.one);
     if args.round_trip {
-        others = round_trip::written(&robots, &opened.engines, &folder.join(round_trip::FOLDER))?;
+        others = round_trip::written(&robots, &opened.engines, &round_trip::beside(&folder))?;
     }
     let pairs: Vec<(String, String)> = others.iter().map(|other| (other.identity().name.clone(), other.of.clone())).collect();
     opened.engines.extend(others.into_iter().map(|other| Box::new(other) as Box<dyn Engine>));
@@ -111,6 +111,9 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let info = run::describe(root, provenance::collect(root.path()), &about, &opened, started)?;
     run::tell_notes(&info);
     let mut run = Run::open(&folder, Opening::New, info)?;
+    if args.round_trip {
+        round_trip::keep(&folder)?;
+    }
     run.info.seconds.insert("setup".into(), start.elapsed().as_secs_f64());
     let context = Context { robots: &robots, engines: &opened.engines, gates: &gates, seed: SEED };
     let shown = ["readback", "id", "bias", "mass_matrix_probe"];

@@ -7,10 +7,22 @@ use crate::message::tell;
 use featherbench_bench::{Engine, Rewritten, Robot};
 use featherbench_formats::{OnLoss, mjcf, urdf, usd};
 use featherbench_model::Description;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The folder of the copies, in that of the run.
-pub const FOLDER: &str = "written";
+const FOLDER: &str = "written";
+
+/// Where the copies are made. A run begins in an empty folder, so it is beside it, in the same file system.
+pub fn beside(run: &Path) -> PathBuf {
+    let name = run.file_name().unwrap_or_default().to_string_lossy();
+    run.with_file_name(format!(".{name}.{FOLDER}.{}", std::process::id()))
+}
+
+/// Moves the copies into the folder of the run.
+pub fn keep(run: &Path) -> Result<(), Fail> {
+    let (from, to) = (beside(run), run.join(FOLDER));
+    std::fs::rename(&from, &to).map_err(|error| Fail::input(format!("{}: {error}", to.display())))
+}
 
 /// The copies of each robot's file. A writer that fails is told, and so is what ours leave out.
 pub fn written(robots: &[Robot], engines: &[Box<dyn Engine>], folder: &Path) -> Result<Vec<OtherFile>, Fail> {

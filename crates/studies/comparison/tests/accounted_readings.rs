@@ -2,7 +2,7 @@
 //! their size. The same notes beside other numbers name nothing.
 
 use featherbench_bench::{FileInertial, FileLink, ImportNote};
-use featherbench_comparison::import::{Cause, Comparison, Difference, Field, bound};
+use featherbench_comparison::import::{Cause, Comparison, Difference, Field, Precision, bound};
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement};
 use featherbench_robots::Random;
 use featherbench_spatial::{Mat3, RigidBodyInertia, Sym3, Transform, Vec3};
@@ -271,6 +271,12 @@ fn a_plane_that_is_always_z_is_named() {
 /// The limit between equal and unexplained is one bound, which grows with the depth.
 #[test]
 fn the_bound_of_rounding_grows_with_the_depth() {
-    assert_eq!((bound(1), bound(100), bound(1000), bound(5000)), (1e-12, 1e-12, 1e-11, 5e-11));
-    assert!(7.8e-12 <= bound(1000));
+    let double = |depth| bound(depth, Precision::Double);
+    assert_eq!([1, 100, 1000, 5000].map(double), [1e-12, 1e-12, 1e-11, 5e-11]);
+    assert!(7.8e-12 <= double(1000));
+    // That of single precision is as many times as large as its roundings.
+    let times = f64::from(f32::EPSILON) / f64::EPSILON;
+    for depth in [1, 100, 1000] {
+        assert!((bound(depth, Precision::Single) / (times * double(depth)) - 1.0).abs() < 1e-12);
+    }
 }

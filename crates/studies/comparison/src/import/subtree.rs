@@ -12,9 +12,8 @@ use featherbench_model::Description;
 ///
 /// - Algorithms differ by 1e-13 and less on robots of a few ten joints. MuJoCo alone loses up to 2e-12 far from the whole robot's centre of
 ///   mass, which `ci/deviations/mujoco.toml` names.
-/// - Each joint of a chain adds a rounding error, which is carried to the world: 1e-14 is 45 ε a joint. At a thousand joints MuJoCo's error
-///   is
-///   7.8e-12.
+/// - Each joint of a chain adds a rounding error, which is carried to the world: 1e-14 is 45 ε a joint. At a thousand joints MuJoCo's
+///   error is 7.8e-12.
 /// - An edit by a parser causes 1e-9 and more.
 ///
 /// In single precision it is 2²⁹ times that, as the unit of rounding is.

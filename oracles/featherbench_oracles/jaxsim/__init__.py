@@ -1,0 +1,1 @@
+"""JaxSim as an oracle."""

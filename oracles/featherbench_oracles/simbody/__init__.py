@@ -1,0 +1,1 @@
+"""Simbody as an oracle, by OpenSim's models."""
