@@ -18,9 +18,9 @@ fn each_row_has_its_test_and_each_test_its_row() {
     let rows = ledger();
     let engines = featherbench_bench::Engines::read(&project().join("oracles/engines.toml")).unwrap();
     let text: String = engines
-        .names(|engine| engine.is_python())
         .iter()
-        .map(|engine| read(&format!("oracles/featherbench_oracles/{engine}/conventions.py")))
+        .map(|engine| project().join(format!("oracles/featherbench_oracles/{}/conventions.py", engine.name)))
+        .filter_map(|path| std::fs::read_to_string(path).ok())
         .collect();
     let tests: BTreeSet<&str> = text
         .lines()
@@ -38,7 +38,7 @@ fn each_row_has_its_test_and_each_test_its_row() {
     }
 }
 
-/// A conversion names functions or classes of the engine's file in backticks, as `file: name`, or none.
+/// A conversion names functions, classes or constants of the engine's file in backticks, as `file: name`, or none.
 #[test]
 fn each_named_function_exists() {
     let mut found = 0;
@@ -48,8 +48,10 @@ fn each_named_function_exists() {
         for word in named {
             let (file, name) = word.split_once(": ").unwrap_or_else(|| panic!("{word} is not `file: name`"));
             let text = read(&format!("oracles/featherbench_oracles/{file}"));
-            let defined = [format!("def {name}("), format!("class {name}:")].iter().any(|definition| text.contains(definition));
-            assert!(defined, "{}: {file} has neither a function nor a class {name}", row.test);
+            let defined = [format!("def {name}("), format!("class {name}:"), format!("class {name}("), format!("\n{name} = ")]
+                .iter()
+                .any(|definition| text.contains(definition));
+            assert!(defined, "{}: {file} has neither a function nor a class nor a constant {name}", row.test);
             found += 1;
         }
     }

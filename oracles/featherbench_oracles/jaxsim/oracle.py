@@ -160,10 +160,6 @@ class JaxSimRobot:
             forces[self.links[0]] = ask.tau[:6]
         return self._back(method(self.model, self._data(ask), joint_forces=jnp.array(self._joints(ask.tau, 6)), link_forces=forces))
 
-    def coriolis(self, ask: State) -> Array:
-        """Answer `coriolis_matrix` by free_floating_coriolis_matrix."""
-        return np.array(js.model.free_floating_coriolis_matrix(self.model, self._data(ask)))[np.ix_(self.own, self.own)]
-
     # ---- energy, momentum, kinematics
 
     def kinetic(self, ask: State) -> float:
@@ -233,7 +229,6 @@ class JaxSim:
         "mass_matrix_sparse": {"free_floating_mass_matrix": JaxSimRobot.mass_matrix},
         "mass_matrix_probe": {"free_floating_mass_matrix": JaxSimRobot.probe},
         "fd": {"forward_dynamics_aba": JaxSimRobot.aba, "forward_dynamics_crb": JaxSimRobot.by_mass_matrix},
-        "coriolis_matrix": {"free_floating_coriolis_matrix": JaxSimRobot.coriolis},
         "kinetic_energy": {"kinetic_energy": JaxSimRobot.kinetic},
         "com": {"com_position": JaxSimRobot.com},
         "momentum": {"centroidal_momentum": JaxSimRobot.momentum},

@@ -182,7 +182,7 @@ proptest! {
         let (moments, axes) = s.principal();
         let [a, b, c] = moments;
         let back = Sym3::from_array([a, 0.0, 0.0, b, 0.0, c]).rotate(axes).to_array();
-        let largest = s.to_array().iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let largest = s.to_array().into_iter().map(f64::abs).fold(0.0, featherbench_spatial::larger);
         // Each of some ten rotations rounds every entry by an ulp of the largest.
         prop_assert!(s.to_array().iter().zip(back).all(|(x, y)| (x - y).abs() <= 64.0 * f64::EPSILON * largest), "{s:?} {back:?}");
         let identity = (axes.transpose() * axes).to_array();

@@ -10,10 +10,12 @@ mod derivatives;
 mod drawn_causes;
 mod excused;
 mod import;
+mod invariance;
 mod over_best;
 mod planted;
 mod planted_answers;
 mod planted_readings;
+mod precision;
 mod repeatability;
 mod reproductions;
 #[path = "../../../mechanics/robots/tests/share.rs"]

@@ -89,10 +89,10 @@ fn our_own_kernels_lose_what_rounding_takes() {
     for robot in ROBOTS {
         let rows = rows_of(Featherbench::new(), &[robot]);
         assert!(rows.iter().all(|row| row.precision == "f32" && row.verdict == Verdict::Info), "{rows:#?}");
-        let share = value(&rows, "fd_single", "off_bound");
+        let share = value(&rows, "fd_f32", "off_bound");
         // A stable method keeps near the bound, which is that of the exact answer at rounded inputs.
         assert!(share > 1e-4 && share < 20.0, "{robot}: {share} of the conditioning bound");
-        let [off, drift] = [value(&rows, "fd_single", "off_share"), value(&rows, "drift", "off")];
+        let [off, drift] = [value(&rows, "fd_f32", "off_share"), value(&rows, "drift", "off")];
         assert!(off > 1e-10 && off < 1e-3, "{robot}: {off}");
         assert!(drift > 0.0 && drift < 1.0, "{robot}: {drift} rad");
     }

@@ -8,10 +8,9 @@ mod changes;
 pub(crate) mod section;
 pub(crate) mod words;
 
-use changes::{CHANGES, changed};
+use changes::{CHANGES, changed, turning};
 use featherbench_bench::measure::{ratio, worst};
 use featherbench_bench::{Asked, Cell, Context, Engine, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
-use featherbench_model::JointType;
 use featherbench_results::{ModelOrigin, Row, Verdict};
 use featherbench_study::{Entry, answer, as_many, row, unanswered};
 use serde_json::json;
@@ -131,13 +130,4 @@ fn distance(robot: &Robot, quantity: &str, first: &[f64], second: &[f64]) -> f64
         (0..nv).map(|i| ratio((first[i] - second[i]).abs(), size(i))).fold(0.0, worst)
     };
     states.map(of_state).fold(0.0, worst)
-}
-
-/// Of each degree of freedom, whether it turns.
-fn turning(kind: JointType) -> Vec<bool> {
-    match kind {
-        JointType::Free => vec![false, false, false, true, true, true],
-        JointType::Prismatic { .. } | JointType::Translation => vec![false; kind.nv()],
-        _ => vec![true; kind.nv()],
-    }
 }
