@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib.metadata
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import jaxsim.api as js
 import numpy as np
@@ -65,6 +66,7 @@ class JaxSimRobot:
         base_rows = np.arange(6) if self.floats else np.zeros(0, dtype=np.intp)
         self.own = np.append(base_rows, 6 + self.joints)  # where our velocities are among its own
         self.held: tuple[Any, Any] = (None, None)
+        self.made = jax.jit(lambda given: js.data.JaxSimModelData.build(self.model, velocity_representation=VelRepr.Body, **given))
 
     def readback(self) -> list[Array]:
         """Read back each link's inertia, and each joint's frame on its parent."""
@@ -93,8 +95,7 @@ class JaxSimRobot:
                 turn, origin = joint.rotation @ rotation(ask.q[3:7]), joint.translation + joint.rotation @ ask.q[:3]
                 given |= {"base_linear_velocity": ask.v[:3], "base_angular_velocity": ask.v[3:6]}
             given |= {"base_position": self.upright @ origin, "base_quaternion": np.roll(quaternion(self.upright @ turn), 1)}
-            made = js.data.JaxSimModelData.build(self.model, velocity_representation=VelRepr.Body, **given)
-            self.held = ask, made
+            self.held = ask, self.made({name: jnp.array(value) for name, value in given.items()})
         return self.held[1]
 
     def _joints(self, whole: Array, base: int) -> Array:
@@ -164,14 +165,21 @@ class JaxSimRobot:
 
     def kinetic(self, ask: State) -> float:
         """Answer `kinetic_energy` by kinetic_energy."""
+        self._needs_masses()
         return float(js.model.kinetic_energy(self.model, self._data(ask)))
+
+    def _needs_masses(self) -> None:
+        if not self.floats or not all(body.mass for body in self.robot.bodies):
+            raise Unsupported("JaxSim's energy, momentum and centre of mass are no numbers where a link, as a fixed base, has no mass")
 
     def com(self, ask: State) -> Array:
         """Answer `com` by com_position."""
+        self._needs_masses()
         return self.upright.T @ np.array(js.com.com_position(self.model, self._data(ask)))
 
     def momentum(self, ask: State) -> Array:
         """Answer `momentum` by centroidal_momentum in the mixed representation."""
+        self._needs_masses()
         data = self._data(ask)
         with data.switch_velocity_representation(VelRepr.Mixed):
             return self._in_world(np.array(js.com.centroidal_momentum(self.model, data)))
@@ -238,5 +246,6 @@ class JaxSim:
     }
 
     def prepare(self, description: Description) -> JaxSimRobot:
-        """Build the robot."""
+        """Build the robot, and forget the code that was compiled for the one before."""
+        jax.clear_caches()
         return JaxSimRobot(description)

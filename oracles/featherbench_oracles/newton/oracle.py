@@ -23,6 +23,9 @@ from featherbench_oracles.newton.reading import Read
 
 STEP = 1e-3  # s, of the step whose acceleration is the forward dynamics
 
+# What a file gives joints beside their inertia, and enters a step: springs of limits and of targets, damping, friction.
+FORCES = tuple(f"joint_{name}" for name in ("limit_ke", "limit_kd", "target_ke", "target_kd", "stiffness", "damping", "friction"))
+
 
 class NewtonRobot:
     """A robot in Newton. Every method that takes a question answers one quantity at its state, as `protocol.Engine` says.
@@ -43,6 +46,8 @@ class NewtonRobot:
         # Newton's place of each coordinate; the body of a free root, whose centre of mass its velocity is that of
         self.q, self.v = np.array(read.q if read else range(robot.nq)), np.array(read.v if read else range(nv))
         self.root = int(read.index["joint_child"][read.order[0]]) if read else 0
+        for name in FORCES:
+            getattr(self.model, name).zero_()
         self.mass = wp.zeros((1, nv, nv), dtype=wp.float32)
         self.gravity, self.coriolis, self.force = (wp.zeros(nv, dtype=wp.float32) for _ in range(3))
 

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from math import inf
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pybullet as pb
@@ -63,6 +64,8 @@ def _load(path: Path, form: str, base: str, client: int) -> int:
     """Load the one multi-body of a file."""
     if form == "urdf":
         return int(pb.loadURDF(str(path), useFixedBase=base == "fixed", flags=FLAGS, physicsClientId=client))
+    if form == "sdf" and any((parent.text or "").strip() == "world" for parent in ElementTree.parse(path).iter("parent")):
+        raise Unsupported("PyBullet reads no joint of an SDF to the world")
     load = pb.loadSDF if form == "sdf" else pb.loadMJCF
     made = [k for k in load(str(path), physicsClientId=client) if pb.getNumJoints(k, physicsClientId=client)]
     if len(made) != 1:

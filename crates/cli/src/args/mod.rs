@@ -68,7 +68,7 @@ pub enum Command {
     Export(ExportArgs),
     /// Ask the engines and keep their answers in datasets/recorded.
     Record(RecordArgs),
-    /// Write a robot, generated or read from URDF or MJCF, as a description, URDF or MJCF.
+    /// Write a robot, generated or read from a file, as a description, URDF, MJCF or USD.
     Gen(GenArgs),
     /// Identify a robot's parameters from a log, or write a motion that tells them.
     Identify(IdentifyArgs),
@@ -287,7 +287,8 @@ pub struct RecordArgs {
     after_help = "Examples:\n  featherbench gen chain --n 1000 --out chain.json\n  featherbench gen tree --seed 7 --set joints=all --set base=free --out tree.json\n  featherbench gen urdf --file robot.urdf --floating --out robot.json\n  featherbench gen mjcf --file scene.xml --out robot.json   what MuJoCo's compiler makes of it\n  featherbench gen neutral --file robot.json --out robot.urdf\n  featherbench gen humanoid --lossy --out humanoid.xml\n\n`featherbench list` names the families and their parameters."
 )]
 pub struct GenArgs {
-    /// A family of generated robots (also with its parameters, as in `chain:n=20,layout=spatial`), or a file's format: `urdf`, `mjcf`, `neutral`.
+    /// A family of generated robots (also with its parameters, as in `chain:n=20,layout=spatial`), or a file's format: `urdf`, `mjcf`, `sdf`,
+    /// `usd`, `neutral`.
     pub family: String,
     /// Number of links.
     #[arg(long)]
