@@ -11,12 +11,13 @@ from pathlib import Path
 import pytest
 
 from featherbench_oracles.testing.client import Oracle
-from featherbench_oracles.testing.described import ALONE, PACKAGES, alone
+from featherbench_oracles.testing.described import ALONE, NIGHT, PACKAGES, alone
 
 from .readers import Readers
 
 WITNESS = {"truth": "mpmath"}  # the witness of truth, and the package that it needs
 REQUIRE_ALL = "FEATHERBENCH_REQUIRE_ALL"
+NIGHTLY = "FEATHERBENCH_NIGHTLY"
 
 
 def installed(engine: str) -> bool:
@@ -31,7 +32,9 @@ def installed(engine: str) -> bool:
 
 
 def require(engine: str) -> None:
-    """Skip the test where the engine is not installed; fail it where FEATHERBENCH_REQUIRE_ALL is set."""
+    """Skip the test where the engine is not installed, or is left to the night; fail it where FEATHERBENCH_REQUIRE_ALL is set."""
+    if engine in NIGHT and os.environ.get(NIGHTLY) is None:
+        pytest.skip(f"{engine} is left to the night ({NIGHTLY} is not set)")
     if installed(engine):
         return
     named = f" {engine}" if engine in ALONE else ""

@@ -16,16 +16,19 @@ class Package(NamedTuple):
     version: str
 
 
+TABLES = tomllib.loads((HOME / "engines.toml").read_text(encoding="utf-8"))
+
+
 def _read(kind: str) -> dict[str, Package]:
     """Read the table of each engine that is started so, in the order of the file."""
-    tables = tomllib.loads((HOME / "engines.toml").read_text(encoding="utf-8"))
-    python = {name: table["package"] for name, table in tables.items() if table["start"]["kind"] == kind}
+    python = {name: table["package"] for name, table in TABLES.items() if table["start"]["kind"] == kind}
     return {name: Package(package["name"], package["version"]) for name, package in python.items()}
 
 
 PACKAGES = _read("python")
 ENGINES = tuple(PACKAGES)
 ALONE = tuple(_read("python_alone"))  # each in an environment of its own
+NIGHT = tuple(name for name, table in TABLES.items() if table.get("night"))  # tests ask them at night alone
 
 
 def alone(engine: str) -> Path:

@@ -3,18 +3,24 @@
 use super::native::{self, PATIENT};
 use super::{Outcome, Unpassed, oracle_command};
 use crate::support::{Ended, project};
-use featherbench_bench::{Engine, Quantity, Robot};
+use featherbench_bench::{Engine, Engines, Quantity, Robot};
 use featherbench_engines::Oracle;
 use featherbench_results::{Base, ModelOrigin};
 use std::ffi::OsString;
 use std::process::Command;
 
-/// The command of an engine's oracle.
+/// The command of an engine's oracle. Those of the night are asked with FEATHERBENCH_NIGHTLY alone.
 pub fn command(engine: &str) -> Result<Vec<OsString>, Unpassed> {
+    let engines = Engines::read(&project().join("oracles/engines.toml")).unwrap();
+    let night = engines.iter().any(|described| described.name == engine && described.night);
+    if night && std::env::var_os("FEATHERBENCH_NIGHTLY").is_none() {
+        return Err(Unpassed::Nightly("FEATHERBENCH_NIGHTLY is not set".into()));
+    }
     let folder = project().join("target/oracles").join(engine);
     let python = folder.join("venv/bin/python");
     let installed = python.exists() && folder.join("installed").exists();
-    let skipped = || Unpassed::Skipped(format!("{engine} is not installed (`featherbench oracles install {engine}`)"));
+    let reason = format!("{engine} is not installed (`featherbench oracles install {engine}`)");
+    let skipped = || if night { Unpassed::Nightly(reason) } else { Unpassed::Skipped(reason) };
     if installed { Ok(oracle_command(&python, engine)) } else { Err(skipped()) }
 }
 

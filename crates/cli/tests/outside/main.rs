@@ -1,8 +1,8 @@
-//! Tests that need what a new machine may not have: Python, the reference engines, rapier, dynibo, faer, nalgebra, adam, iDynTree, MuJoCo
-//! Warp, Newton, clarabel, a browser.
+//! Tests that need what a new machine may not have: Python, the reference engines, engines that are installed or built by themselves, a
+//! browser.
 //!
 //! Each is run if it can be, and otherwise listed as skipped. With `FEATHERBENCH_REQUIRE_ALL` set, as in CI, a skip is a failure. The
-//! native oracles are required at night only, with `FEATHERBENCH_NIGHTLY` set.
+//! native oracles, and engines whose table says `night`, are required at night only, with `FEATHERBENCH_NIGHTLY` set.
 //! The tests do not use libtest: its captured output would hide the skips.
 
 mod adam;

@@ -34,6 +34,9 @@ pub struct DescribedEngine {
     /// Whether it writes files again.
     #[serde(default)]
     pub writes: bool,
+    /// Whether tests ask it at night alone.
+    #[serde(default)]
+    pub night: bool,
     /// Whether its answers are kept in `datasets/recorded`.
     #[serde(default)]
     pub recorded: bool,
