@@ -114,7 +114,9 @@ impl<'a> SpeedVerdict<'a> {
         let timed = |line: &&Line| line.ratios.values().any(|ratio| !ratio.estimated);
         let all = self.lines.iter().filter(timed).count();
         if all == 0 {
-            return "No other engine was timed here but by estimates".into();
+            let estimated = self.lines.iter().any(|line| !line.ratios.is_empty());
+            let others = if estimated { "others by estimates alone" } else { "no other engine" };
+            return format!("This run timed featherbench, and {others}; the table of engines has recorded times");
         }
         let counts = |ratio: &&Ratio| ratio.valid && !ratio.estimated;
         let fastest = |line: &Line| line.ratios.values().filter(counts).map(|ratio| ratio.value).min_by(f64::total_cmp);
