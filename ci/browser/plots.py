@@ -48,7 +48,7 @@ SAVED = (
     + """
     const text = box.saved();
     const file = new DOMParser().parseFromString(text, 'image/svg+xml');
-    const named = [...box.querySelectorAll('.entry text')].map(name => name.textContent);
+    const named = [...box.querySelectorAll('.entry[aria-pressed=true] text')].map(name => name.textContent);
     return {
       root: file.documentElement.tagName,
       marks: file.querySelectorAll('.series .mark').length,
@@ -62,6 +62,12 @@ EXPLAINED = (
     + """
     const tip = box.querySelector('.chart-tip');
     return tip.hidden ? '' : [...tip.children].map(line => line.textContent).join('|')"""
+)
+SWITCH = (
+    DRAWING
+    + """
+    const names = box.querySelectorAll('.entry');
+    for (const k of arguments[1]) names[k].dispatchEvent(new MouseEvent('click', {bubbles: true}));"""
 )
 FOCUS = DRAWING + "box.querySelector('svg').focus()"
 # Seconds after which a browser is taken to save nothing, on a machine however busy.
@@ -96,6 +102,10 @@ def plots(page: Browser, shot: Shot) -> Checks:
         page.run(DRAWING + "box.querySelector('.chart-copy').click()", boxes[0])
         answered = page.until(DRAWING + "return box.querySelector('.chart-copy').textContent !== 'Copy data'", boxes[0])
         yield "the data of a drawing can be copied, or the browser forbids it", answered, ""
+
+
+# Series that are seen at first: `figure/draw.rs` says which.
+AT_ONCE = 6
 
 
 def drawing(page: Browser, box: str, shot: Shot) -> Checks:
@@ -141,12 +151,20 @@ def drawing(page: Browser, box: str, shot: Shot) -> Checks:
     page.press(ENTER)
     again = page.run(PLOT, box)
     yield f"{box}: Enter on a name switches it on again", again == first, [again, first]
-    every = DRAWING + "for (const name of box.querySelectorAll('.entry')) name.dispatchEvent(new MouseEvent('click', {bubbles: true}))"
-    page.run(every, box)
+    of_first = [k for k, on in enumerate(first["names"]) if on]
+    others = [k for k, on in enumerate(first["names"]) if not on]
+    page.run(SWITCH, box, of_first)
     none = page.run(PLOT, box)
     yield f"{box} without any series has no points", none["points"] == 0, none["points"]
-    page.run(every, box)
+    page.run(SWITCH, box, of_first)
     yield f"{box} comes back whole", page.run(PLOT, box) == first, ""
+    at_once = min(len(first["names"]), AT_ONCE)
+    yield f"{box} shows six series at first, or all of fewer", len(of_first) == at_once, first["names"]
+    if others:
+        page.run(DRAWING + "box.querySelector('.chart-every').click()", box)
+        whole = page.run(PLOT, box)
+        yield f"{box} shows all of them by its button", all(whole["names"]) and whole["points"] >= first["points"], whole["names"]
+        page.run(SWITCH, box, others)
 
     for way in ["Escape", "a double click", "its button"]:
         place = page.run(LONELY, box)

@@ -3,7 +3,7 @@
 //! Prints a line `kernel,model,states` before each. Everything that is counted runs in [`featherbench_measured`], called once per line.
 
 use featherbench_bench::{Engine, Evaluation, Robot};
-use featherbench_engines::{Featherbench, timed};
+use featherbench_engines::{Featherbench, counted};
 use featherbench_results::ModelOrigin;
 use featherbench_robots::{Family, StateBatch};
 use std::hint::black_box;
@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let description = Family::parse(robot)?.generate()?;
         let robot = Robot::new(&description, "instructions", ModelOrigin::Generated, 1, SEED)?;
         let states = StateBatch::random(&robot.model, STATES, SEED);
-        for (quantity, method) in timed(&robot) {
+        for (quantity, method) in counted(&robot) {
             let mut prepared = featherbench.prepare(&robot, quantity, method, &states)?;
             // A call of a batch takes as long for one state as for all that it has room for.
             let states = STATES.next_multiple_of(prepared.together());

@@ -19,7 +19,7 @@ mod reproducer;
 mod request;
 mod shape;
 
-pub use featherbench_kernels::{Featherbench, timed};
+pub use featherbench_kernels::{Featherbench, counted, timed};
 pub use featherbench_protocol::{Clock, Limits, SystemClock};
 pub use oracle::{Oracle, OracleResidual};
 pub use recorded::{EngineRecording, Recorded, Recording, RecordingError, Recordings, read_recordings, recording_name};

@@ -135,8 +135,15 @@ pub(crate) fn kernel<'a>(robot: &'a Robot, quantity: Quantity, method: Method, s
     })
 }
 
-/// The quantities of the timing study, the usual method first: one pass of one algorithm each, from q, v, a or τ to its result.
+/// The quantities of the timing study, the usual method first. Derivatives of a big robot have nv² numbers, and the check of their answers takes
+/// longer than they do.
 pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
+    let small = robot.states.nv <= DENSE_LIMIT;
+    counted(robot).into_iter().filter(|(quantity, _)| small || !quantity.is_derivative()).collect()
+}
+
+/// The quantities whose instructions are counted, the usual method first: one pass of one algorithm each, from q, v, a or τ to its result.
+pub fn counted(robot: &Robot) -> Vec<(Quantity, &'static str)> {
     let quantities = [
         Quantity::InverseDynamics,
         Quantity::Bias,
@@ -153,8 +160,10 @@ pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
         Quantity::BodyJacobian,
     ];
     // A body Jacobian has 6·nv numbers, most of them zero on big robots. Only its nonzero columns would be worth timing. An inverse is dense:
-    // the check of its answers takes O(nv³) for each state of the stream, as second derivatives by dual numbers do. Derivatives have nv² numbers.
-    let dense = |quantity: &Quantity| matches!(quantity, Quantity::BodyJacobian | Quantity::MassMatrixInverse) || quantity.is_derivative();
+    // the check of its answers takes O(nv³) for each state of the stream, as second derivatives by dual numbers do.
+    let dense = |quantity: &Quantity| {
+        matches!(quantity, Quantity::BodyJacobian | Quantity::MassMatrixInverse) || Quantity::SECOND_DERIVATIVES.contains(quantity)
+    };
     let quantities = quantities.into_iter().chain(Quantity::DERIVATIVES).chain(Quantity::SECOND_DERIVATIVES);
     quantities
         .filter(|quantity| !dense(quantity) || robot.states.nv <= DENSE_LIMIT)

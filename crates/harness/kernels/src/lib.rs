@@ -11,5 +11,5 @@ mod own;
 mod parallel;
 mod second_derivatives;
 
-pub use kernel::{reads_description, timed};
+pub use kernel::{counted, reads_description, timed};
 pub use own::Featherbench;

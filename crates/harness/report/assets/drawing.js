@@ -39,10 +39,11 @@
       label.textContent = tick.dataset.label;
       tick.append(label);
     }
-    const off = new Set();
+    const off = new Set(names.flatMap((name, k) => ("off" in name.dataset ? [k] : [])));
     let [view, spot, start] = [whole, null, null];
 
     const back = make("button", { type: "button", className: "chart-back", hidden: true }, "Reset zoom");
+    const every = make("button", { type: "button", className: "chart-every" }, `All ${names.length} series`);
     const kept = make("button", { type: "button", className: "chart-save" }, "Save as SVG");
     const copied = make("button", { type: "button", className: "chart-copy" }, "Copy data");
     const tip = make("div", { className: "chart-tip", role: "status", hidden: true });
@@ -50,7 +51,7 @@
     const link = make("a", { className: "chart-link", href: address(drawing) }, "Link");
     link.addEventListener("pointerdown", () => { link.href = address(drawing); });
     link.addEventListener("focus", () => { link.href = address(drawing); });
-    drawing.append(tip, make("p", { className: "chart-tools" }, back, kept, copied, link));
+    drawing.append(tip, make("p", { className: "chart-tools" }, back, every, kept, copied, link));
     svg.append(over);
     svg.setAttribute("role", "group");
     svg.setAttribute("tabindex", "0");
@@ -206,6 +207,7 @@
 
     function press() {
       names.forEach((name, k) => name.setAttribute("aria-pressed", String(!off.has(k))));
+      every.hidden = off.size === 0;
       place();
     }
     names.forEach((name, k) => {
@@ -221,6 +223,8 @@
       });
     });
 
+    every.addEventListener("click", () => { off.clear(); press(); });
+
     // --- Copies.
 
     kept.addEventListener("click", () => {
@@ -233,6 +237,7 @@
       const copy = svg.cloneNode(true);
       copy.querySelector(".over").remove();
       for (const name of ["tabindex", "style", "aria-label"]) copy.removeAttribute(name);
+      for (const name of copy.querySelectorAll('.entry[aria-pressed="false"]')) name.remove();
       for (const part of copy.querySelectorAll("*")) {
         for (const { name } of [...part.attributes]) if (/^(data-|aria-|tabindex|role$)/.test(name)) part.removeAttribute(name);
         if (part.style.display === "none") part.remove();

@@ -21,6 +21,8 @@ const BELOW: [f64; 2] = [28.0, 22.0];
 const NAMED: f64 = 18.0;
 /// Heights at which the words of events stand.
 const EVENT_LINES: usize = 6;
+/// Series that are seen at once on the page. The reader switches on the others.
+const AT_ONCE: usize = 6;
 /// Marks on stairs, which may have thousands of points.
 const SPARSE: usize = 8;
 /// The slope of names along the axis across, in degrees.
@@ -88,7 +90,8 @@ impl Plot {
 pub(super) fn draw(plot: &Plot, events: &[(f64, String)], page: bool) -> Option<([f64; 2], Markup)> {
     let layout = Layout::of(plot, if page { PAGE } else { BOX })?;
     let Layout { left, top, right, bottom, labels, .. } = layout;
-    let entries: Vec<(&str, Style, Sample)> = plot.series.iter().map(entry).collect();
+    let seen = at_once(&plot.series);
+    let entries: Vec<(&str, Style, Sample)> = plot.series.iter().zip(seen).map(|(series, seen)| entry(series, !seen && page)).collect();
     let below = bottom + labels + BELOW[0];
     // In a paper names stand beside the box, on the page below it, in columns.
     let column = legend_width(&entries);
@@ -114,14 +117,30 @@ pub(super) fn draw(plot: &Plot, events: &[(f64, String)], page: bool) -> Option<
     Some((size, body))
 }
 
+/// Which series are seen first: levels and bounds, then the first series of each colour, then the second ones.
+fn at_once(series: &[Series]) -> Vec<bool> {
+    let rank = |index: usize| {
+        let style = series[index].style;
+        (style != Style::NEUTRAL, series[..index].iter().filter(|before| before.style.colour == style.colour).count(), index)
+    };
+    let mut order: Vec<usize> = (0..series.len()).collect();
+    order.sort_by_key(|&index| rank(index));
+    order.truncate(AT_ONCE);
+    (0..series.len()).map(|index| order.contains(&index)).collect()
+}
+
 /// The entry of a series in the legend.
-fn entry(series: &Series) -> (&str, Style, Sample) {
+fn entry(series: &Series, off: bool) -> (&str, Style, Sample) {
     let line = series.line != Line::Marks && (series.points.len() > 1 || series.level.is_some() || series.path.is_some());
     let marks = series
         .points
         .first()
         .map(|point| (series.points.iter().all(|other| other.hollow) && point.hollow, series.points.iter().all(|other| other.estimated)));
-    (&series.name, series.style, Sample { line, dash: series.dash, marks, broad: series.points.is_empty() && !series.broad.is_empty() })
+    (
+        &series.name,
+        series.style,
+        Sample { line, dash: series.dash, marks, broad: series.points.is_empty() && !series.broad.is_empty(), off },
+    )
 }
 
 fn bands(layout: &Layout) -> Markup {

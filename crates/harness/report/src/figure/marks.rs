@@ -106,6 +106,8 @@ pub(super) struct Sample {
     pub(super) marks: Option<(bool, bool)>,
     /// Whether it is a broad line alone.
     pub(super) broad: bool,
+    /// Whether the page switches its series off at first.
+    pub(super) off: bool,
 }
 
 /// The names of series, each with its sample, in so many columns of a width.
@@ -116,7 +118,7 @@ pub(super) fn legend(entries: &[(&str, Style, Sample)], [left, top]: [f64; 2], [
                 @let left = left + width * (index as f64 % columns);
                 @let y = top + 20.0 * (index as f64 / columns).floor();
                 @let ends = [(left, y), (left + 26.0, y)];
-                g.entry {
+                g.entry data-off[sample.off] {
                     @if sample.broad { (broad(*style, &ends)) }
                     @if sample.line { (path(*style, sample.dash, &ends, false)) }
                     @if let Some((hollow, estimated)) = sample.marks { g fill=(ink(style.colour)) stroke="#ffffff" stroke-width="0.6" { (mark(*style, hollow, estimated, left + 13.0, y, html! {}, &Data::default())) } }

@@ -249,11 +249,16 @@ fn the_first_page_says_who_is_fastest() {
     let table = written.section("speed-by-robot");
     assert!(table.contains("100 ns [90, 110]") && !table.contains("90 ns ["), "our usual method, as the ratios are over it: {table}");
     assert!(table.contains("class=\"number void\">8.000 <small>[7.200, 8.800]</small>"), "what does not count is struck out: {table}");
+    assert!(table.contains("class=\"number ahead3\">4.000"), "a map of times, coloured by the ratio: {table}");
     assert!(written.section("time").contains("id=\"time-first\"") && written.section("time").contains("ns ["));
 
+    let estimate = rows.pop().unwrap();
     rows.truncate(5);
     let alone = report(&RunInfo::default(), &rows);
-    assert!(alone.section("verdict").contains("This run timed featherbench, and others by estimates alone; the table of engines has"));
+    assert!(alone.section("verdict").contains("This run timed featherbench, and no other engine; the table of engines has"));
+    rows.push(estimate);
+    let estimated = report(&RunInfo::default(), &rows);
+    assert!(estimated.section("verdict").contains("This run timed featherbench, and others by estimates alone; the table of engines has"));
     assert!(!report(&RunInfo::default(), &[]).index.contains("speed-verdict"));
 }
 

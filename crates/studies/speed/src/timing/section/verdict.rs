@@ -228,7 +228,7 @@ impl<'a> SpeedVerdict<'a> {
 
     fn table(&self, overview: &Overview) -> Markup {
         html! {
-            table.compact.sortable #speed-by-robot {
+            table.compact.sortable.speed-map #speed-by-robot {
                 thead { tr {
                     th scope="col" { "compute" } th scope="col" { "robot" } th.number scope="col" { "nv" } th.number scope="col" { "ours" }
                     @for &engine in &self.engines { th.number scope="col" { (overview.engines[engine]) " / ours" } }
@@ -241,7 +241,7 @@ impl<'a> SpeedVerdict<'a> {
                             td.number.void[!line.ours.valid] { (time(line.ours)) }
                             @for engine in &self.engines {
                                 @match line.ratios.get(engine) {
-                                    Some(ratio) => td.number.void[!ratio.valid] {
+                                    Some(ratio) => td class={ "number " (if ratio.valid { step(ratio.value) } else { "void" }) } {
                                         @if ratio.estimated { "≈\u{202f}" }
                                         (times(ratio.value)) " " small { "[" (times(ratio.low)) ", " (times(ratio.high)) "]" }
                                     },
@@ -252,7 +252,7 @@ impl<'a> SpeedVerdict<'a> {
                     }
                 }
             }
-            p.note { "Intervals are 95 %. Struck out: does not count." }
+            p.note { "Intervals are 95 %. Colours as above: blue, ours is faster; orange, the other. Struck out: does not count." }
         }
     }
 }
