@@ -114,10 +114,10 @@ def test_dart_loses_the_rotation_of_an_inertial(readers: Readers) -> None:
 
 
 def test_pybullet_does_not_read_a_joint_to_the_world(readers: Readers) -> None:
-    """A refusal with the engine's words; a model with a base of its own is read."""
+    """It is unsupported, by name; a model with a base of its own is read."""
     drawn = Drawn(0, relative=False)
     oracle = readers.oracles["pybullet"]
     request = {"op": "import", "format": "sdf", "base": "fixed"}
     answer = oracle.ask({**request, "file": str(readers.file("world.sdf", drawn.text))})[0]
-    assert answer["status"] == "error"
-    assert "Cannot load SDF file" in answer["reason"]
+    assert answer["status"] == "unsupported"
+    assert "no joint of an SDF to the world" in answer["reason"]

@@ -143,8 +143,8 @@ pub trait Engine: Send + Sync {
         Err(NoAnswer::NotOffered(format!("{} has no parser of {format} files", self.identity().name)))
     }
 
-    /// What the file would be to a parser that reads one thing of it otherwise, or several: hypotheses about the other engines, by the engine
-    /// whose import is the reference of the file's format. Others have none.
+    /// What the file would be to a parser that reads one thing of it otherwise, or several. They are hypotheses about the other engines, by the
+    /// engine whose import is the reference of the file's format. Others have none.
     ///
     /// # Errors
     /// [`NoAnswer`] when the engine does not accept the file.

@@ -1,8 +1,9 @@
 //! Precision: is single precision good enough for this robot?
 //!
-//! Each engine that computes in `f32`, and our own kernels in `f32`, are compared with our kernels in `f64`, in units: newton metres of
-//! torque, radians per second squared of acceleration, radians after a second. *Drift* is the difference of two simulations from rest, with
-//! the same steps (semi-implicit Euler); only the accelerations are the engine's. A number in units says what a user feels, and has no bound.
+//! Each engine that computes in `f32`, and our own kernels in `f32`, are compared with our kernels in `f64`. The difference is told in units:
+//! newton metres of torque, radians per second squared of acceleration, radians after a second. *Drift* is the difference of two simulations
+//! from rest, with the same steps (semi-implicit Euler). Only the accelerations are the engine's. A number in units says what a user feels,
+//! and has no bound.
 //! The agreement study has the same errors in units of rounding, with their bounds.
 
 pub(crate) mod section;
