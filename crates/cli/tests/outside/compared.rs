@@ -210,7 +210,9 @@ pub fn round_trip(_: &Path) -> Outcome {
     ended.expect(1, &["upper: placement by", "arm in MjSpec.to_xml", "arm in mj_saveLastXML"]);
     for (writer, exact) in [("our URDF", true), ("our MJCF", true), ("MjSpec.to_xml", false), ("mj_saveLastXML", false)] {
         let found = differences(&trip, writer);
-        assert!(found.is_empty() == exact && found.iter().all(|(_, cause)| cause == "number"), "{writer}: {found:?}");
+        // The moments of this inertia have few digits, and the quaternion of their axes has many.
+        let due = if exact { vec![] } else { vec![("inertia".to_owned(), "inertia_turned".to_owned())] };
+        assert_eq!(found, due, "{writer}");
         assert!(ended.output.contains(writer), "{writer}: {ended:?}");
     }
     assert!(trip.join("written/0/ours.urdf").exists());

@@ -76,11 +76,10 @@ impl Study for Invariance {
         for (cell, outcome) in finished.iter().filter(|(cell, _)| change_of(cell) != ITSELF) {
             let blank =
                 Row { metric: "moved".into(), unit: "1".into(), reference: cell.engine.clone(), states: "all".into(), ..row(cell, robot) };
-            let blank = context.gates.explain(blank);
             let values = match outcome.answer() {
                 Ok(values) => values,
                 Err(no_answer) => {
-                    rows.push(unanswered(blank, &no_answer, Verdict::Skip));
+                    rows.push(context.gates.explain(unanswered(blank, &no_answer, Verdict::Skip)));
                     continue;
                 }
             };
@@ -88,7 +87,7 @@ impl Study for Invariance {
             let Some(first) = itself(cell) else { continue };
             rows.push(match as_many(values.len(), first.len()) {
                 Ok(()) => context.gates.judge(blank, distance(robot, &cell.quantity, first, values), 1.0),
-                Err(no_answer) => unanswered(blank, &no_answer, Verdict::Error),
+                Err(no_answer) => context.gates.explain(unanswered(blank, &no_answer, Verdict::Error)),
             });
         }
         rows
