@@ -12,7 +12,7 @@ import sys
 import traceback
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -309,8 +309,8 @@ def _state(states: Blocks, k: int, body: int) -> State:
     return State(**row, probe=states["probe"], body=body)
 
 
-def serve(engine: Engine) -> None:
-    """Answer requests until standard input ends. What an engine prints goes to standard error.
+def serve(engine: Engine) -> NoReturn:
+    """Answer requests until standard input ends, then exit. What an engine prints goes to standard error.
 
     Parameters
     ----------
@@ -337,6 +337,9 @@ def serve(engine: Engine) -> None:
         except Exception as reason:  # an engine's failure is an answer
             traceback.print_exc()
             write_message(answers, {"status": "error", **echo, "reason": _sentence(reason)})
+    # JAX and Warp take many seconds to let go of what they compiled.
+    sys.stderr.flush()
+    os._exit(0)
 
 
 def _sentence(reason: Exception) -> str:

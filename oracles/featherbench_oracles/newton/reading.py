@@ -13,6 +13,7 @@ from typing import Any
 
 import newton
 import numpy as np
+from pxr import Usd
 
 from featherbench_oracles.core import bad_values
 from featherbench_oracles.core.algebra import Array, rotation
@@ -149,7 +150,9 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Read], A
         elif form == "mjcf":
             builder.add_mjcf(str(path))
         else:
-            builder.add_usd(str(path))
+            stage = Usd.Stage.Open(str(path))
+            stage.Reload()  # of a file that was written again OpenUSD keeps the first text
+            builder.add_usd(stage)
         model = builder.finalize()
     if not model.body_count:
         raise ValueError(f"Newton holds no body of {path.name}")

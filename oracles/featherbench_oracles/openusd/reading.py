@@ -38,6 +38,7 @@ def read(path: Path) -> Reading:
     with overheard(path, notes), warnings.catch_warnings(category=DeprecationWarning, action="ignore"):
         try:
             stage = Usd.Stage.Open(str(path))
+            stage.Reload()  # of a file that was written again OpenUSD keeps the first text
         except Tf.ErrorException as error:
             raise ValueError(_said(error)) from None
         parsed = UsdPhysics.LoadUsdPhysicsFromRange(stage, [stage.GetPseudoRoot().GetPath()])

@@ -40,6 +40,16 @@ pub fn conforms(engine: &str, words: &[&str]) -> Outcome {
     Ok(())
 }
 
+/// iDynTree conforms but for its Coriolis matrix of robots that float.
+pub fn idyntree_conforms() -> Outcome {
+    let command = command("idyntree")?;
+    let mut check = Command::new(env!("CARGO_BIN_EXE_featherbench"));
+    check.current_dir(project()).args(["oracles", "check", "--timeout", "600"]).args(command);
+    let words = ["error: 1 of ", "coriolis_matrix by coriolis_and_mass_matrices: 2 of 4 robots differ", "iDynTree has no armature"];
+    Ended::new(check.output().unwrap()).expect(1, &words);
+    Ok(())
+}
+
 /// It agrees on chains, trees and arms, fixed and floating, with gravity of any direction; in `f32` to as many times its rounding.
 pub fn agrees(engine: &Oracle) {
     let words = [

@@ -3,7 +3,7 @@
 use super::alone;
 use crate::Outcome;
 use featherbench_bench::{Engine, FileBase, FileContent, FileFormat, RobotFile};
-use featherbench_comparison::import::{Comparison, Precision};
+use featherbench_comparison::import::{Comparison, Difference, Field, Precision};
 use featherbench_engines::Oracle;
 use featherbench_formats::{OnLoss, usd};
 use featherbench_model::{Description, JointType};
@@ -25,10 +25,12 @@ fn has(kind: JointType) -> bool {
     matches!(kind, JointType::Revolute { .. } | JointType::Prismatic { .. } | JointType::Spherical | JointType::Free)
 }
 
-fn written(robot: &Description, folder: &std::path::Path) -> RobotFile {
+/// The file, and what was left out, as it is told. The same path is written again and again.
+fn written(robot: &Description, folder: &std::path::Path) -> (RobotFile, String) {
     let path = folder.join("robot.usda");
-    usd::write(robot, &path, OnLoss::LeaveOut).unwrap();
-    FileContent::read(&path, FileFormat::Usd).unwrap().file(FileBase::Fixed).unwrap()
+    let losses = usd::write(robot, &path, OnLoss::LeaveOut).unwrap();
+    let told: Vec<String> = losses.iter().map(ToString::to_string).collect();
+    (FileContent::read(&path, FileFormat::Usd).unwrap().file(FileBase::Fixed).unwrap(), told.join("\n"))
 }
 
 /// What is read back is the robot, in single precision.
@@ -39,9 +41,16 @@ pub fn read_back() -> Outcome {
         assert!(robots.len() >= 8, "{}", robots.len());
         for robot in robots {
             let ours = robot.canonical().unwrap();
-            let read = engine.read(&written(&robot, folder.path())).unwrap();
+            let (file, told) = written(&robot, folder.path());
+            let read = engine.read(&file).unwrap();
             let found = Comparison::rounded(&ours, &read.description, &[], &read.notes, Precision::Single);
-            let differences: Vec<_> = found.differences().collect();
+            // Of a ball whose three numbers differ the writer says that it keeps the first.
+            let untold = |difference: &&Difference| match difference.field {
+                Field::Damping => !told.contains("damping"),
+                Field::Friction => !told.contains("friction"),
+                _ => true,
+            };
+            let differences: Vec<_> = found.differences().filter(untold).collect();
             assert!(differences.is_empty(), "{}: {differences:#?}", robot.name);
         }
     })
@@ -54,7 +63,7 @@ pub fn newton_reads_it() -> Outcome {
         for words in ["joints:kind=revolute,base=fixed,armature=false", "chain:n=7,layout=spatial", "tree:n=9,seed=3,spread=0.4"] {
             let robot = Family::parse(words).unwrap().generate().unwrap();
             let ours = robot.canonical().unwrap();
-            let read = engine.read(&written(&robot, folder.path())).unwrap();
+            let read = engine.read(&written(&robot, folder.path()).0).unwrap();
             let found = Comparison::rounded(&ours, &read.description, &[], &read.notes, Precision::Single);
             let felt: Vec<_> = found
                 .differences()

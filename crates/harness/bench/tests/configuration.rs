@@ -344,7 +344,7 @@ fn engines_name_what_is_wrong() {
         (both().replace("of = \"zed\"\n", ""), "[a-native]: give `of`"),
         (format!("{PYTHON}of = \"zed\"\n"), "[zed]: give `of`"),
         (PYTHON.replace("[zed]", "[featherbench]"), "[featherbench]"),
-        (format!("{PYTHON}[zed]\n"), "line 10"),
+        (format!("{PYTHON}[zed]\n"), "line 9"),
     ];
     for (text, word) in cases {
         let path = Path::new("oracles/engines.toml");

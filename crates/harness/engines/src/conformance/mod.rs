@@ -139,7 +139,8 @@ pub fn check(start: &dyn Fn() -> Result<Box<dyn Connection>, String>, watch: &dy
 /// What is asked about robots and files.
 fn robots_of(exchange: &mut Exchange, scenes: &[Scene], hello: &Hello, watch: &dyn Fn(&str)) -> Result<(), String> {
     let (offered, extra) = (&hello.methods, hello.steps.clone().unwrap_or_default());
-    let built = protocol::first_built(exchange, scenes);
+    // An oracle that only reads or writes files builds nothing.
+    let built = if offered.is_empty() { None } else { protocol::first_built(exchange, scenes) };
     if let Some(scene) = built {
         protocol::with_robot(exchange, scene, offered);
     }

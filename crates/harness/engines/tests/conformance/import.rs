@@ -55,7 +55,7 @@ fn an_edit_is_told_and_no_fault() {
             bodies(answer).iter_mut().for_each(|body| body["joint"]["damping"] = json!([]));
         }
     };
-    assert!(lacking(Plant { answer: mirrored, ..HONEST }).len() == 3, "damping is not compared");
+    assert!(lacking(Plant { answer: mirrored, ..HONEST }).len() == 5, "damping is not compared");
     let lighter = |answer: &mut Message, request: &Message, _: &Kernels| {
         if tells(answer, request) {
             bodies(answer)[1]["mass"] = json!(0.25);

@@ -49,7 +49,7 @@ fn an_honest_oracle_conforms() {
     let as_read = conformance.of(Standing::Right).filter(|finding| finding.found.contains("2 robots")).count();
     assert_eq!(as_read, 5, "and every quantity that is answered of robots as read");
     let lacking: Vec<_> = conformance.of(Standing::Lacks).map(|finding| finding.what.as_str()).collect();
-    assert_eq!(lacking, ["the ids of requests", "quantities", "it reads an MJCF"]);
+    assert_eq!(lacking, ["the ids of requests", "quantities", "it reads an MJCF", "it reads an SDF", "it reads a USD"]);
 }
 
 /// Derivatives are compared where they are offered; those by finite differences need not have all digits.
