@@ -7,7 +7,7 @@
 //! - [`conditioning`]: how does κ(M) grow, and does it matter?
 //! - [`derivatives`]: which engine's derivatives are right, on which joint, and what does the step of finite differences cost?
 //! - [`invariance`]: what must not change an answer, and does?
-//! - [`precision`]: is single precision good enough for a robot?
+//! - [`single`]: is single precision good enough for a robot?
 //! - [`steps`]: how does the acceleration of a step approach the true one, and how do steps change the energy?
 //! - [`reproductions`]: do the engines' known deviations still exist, and in their known size?
 //! - [`repeatability`]: does the same question have the same answer?
@@ -18,9 +18,9 @@ pub mod conditioning;
 pub mod derivatives;
 pub mod import;
 pub mod invariance;
-pub mod precision;
 pub mod repeatability;
 pub mod reproductions;
+pub mod single;
 pub mod steps;
 pub mod sweep;
 
@@ -30,7 +30,7 @@ pub use conditioning::Conditioning;
 pub use derivatives::Derivatives;
 pub use import::Import;
 pub use invariance::Invariance;
-pub use precision::Precision;
 pub use repeatability::Repeatability;
 pub use reproductions::Reproductions;
+pub use single::Single;
 pub use steps::Steps;

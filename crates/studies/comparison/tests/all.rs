@@ -15,11 +15,11 @@ mod over_best;
 mod planted;
 mod planted_answers;
 mod planted_readings;
-mod precision;
 mod repeatability;
 mod reproductions;
 #[path = "../../../mechanics/robots/tests/share.rs"]
 mod share;
+mod single;
 mod singular;
 mod steps;
 mod truth;

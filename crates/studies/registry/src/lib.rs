@@ -28,7 +28,7 @@ const STUDIES: &[&Entry] = &[
     &comparison::sweep::ENTRY,
     &comparison::conditioning::ENTRY,
     &comparison::derivatives::ENTRY,
-    &comparison::precision::ENTRY,
+    &comparison::single::ENTRY,
     &comparison::invariance::ENTRY,
     &answers::contact::ENTRY,
     &answers::continuum::ENTRY,

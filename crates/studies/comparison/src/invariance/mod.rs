@@ -28,6 +28,8 @@ pub const ENTRY: Entry = Entry {
 
 /// The robot as it is.
 const ITSELF: &str = "none";
+/// The method of a cell of an engine that offers nothing.
+const NONE: &str = "none";
 /// What is asked.
 const QUANTITIES: [Quantity; 2] = [Quantity::InverseDynamics, Quantity::ForwardDynamics];
 
@@ -44,6 +46,10 @@ impl Study for Invariance {
         let mut cells = Vec::new();
         for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
             for engine in context.engines {
+                if QUANTITIES.iter().all(|&quantity| engine.methods(quantity).is_empty()) {
+                    let params = json!({"change": CHANGES[0]});
+                    cells.push(Cell::new(self.name(), robot, engine.identity(), QUANTITIES[0].name(), NONE, params));
+                }
                 for quantity in QUANTITIES {
                     let Some(method) = engine.methods(quantity).into_iter().next() else { continue };
                     let cell = |change: &str| {
@@ -60,6 +66,9 @@ impl Study for Invariance {
 
     fn evaluate(&self, asked: &Asked) -> Outcome {
         let answered = || {
+            if asked.cell.method == NONE {
+                return Err(NoAnswer::NotOffered("it answers none of the quantities that are asked".into()));
+            }
             let (engine, robot) = (asked.engine()?, asked.robot()?);
             let quantity = asked.quantity()?;
             in_our_terms(engine, robot, quantity, &asked.cell.method, change_of(asked.cell))

@@ -3,7 +3,7 @@
 
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
 use featherbench_bench::{Context, Engine, Evaluation, Gates, Identity, NoAnswer, OutcomeStore, Quantity, Robot};
-use featherbench_comparison::Precision;
+use featherbench_comparison::Single;
 use featherbench_engines::Featherbench;
 use featherbench_results::{EngineSource, ModelOrigin, Row, Verdict};
 use featherbench_robots::{Family, StateBatch};
@@ -73,8 +73,8 @@ fn rows_of(engine: impl Engine + 'static, specs: &[&str]) -> Vec<Row> {
     let context = Context { robots: &robots, engines: &engines, gates: &gates, seed: 1 };
     let folder = tempfile::tempdir().unwrap();
     let store = OutcomeStore::open(folder.path()).unwrap();
-    let finished = evaluate(&Precision, &context, plan(&Precision, &context, &|_| true), &store, &Silent).unwrap();
-    compare(&Precision, &context, finished)
+    let finished = evaluate(&Single, &context, plan(&Single, &context, &|_| true), &store, &Silent).unwrap();
+    compare(&Single, &context, finished)
 }
 
 fn value(rows: &[Row], quantity: &str, metric: &str) -> f64 {

@@ -8,7 +8,7 @@ use featherbench_results::{Quantity, Row, RunInfo};
 use maud::{Markup, html};
 
 /// The study's name in rows.
-const STUDY: &str = "precision";
+const STUDY: &str = "single";
 
 /// What is told of an engine on a robot.
 #[derive(Default)]
@@ -54,12 +54,12 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
             }
         }
     }
-    if told.is_empty() { Vec::new() } else { vec![Section::new("precision", "Single precision", body(overview, &told))] }
+    if told.is_empty() { Vec::new() } else { vec![Section::new("single", "Single precision", body(overview, &told))] }
 }
 
 fn body(overview: &Overview, told: &BTreeMap<(usize, usize), Told>) -> Markup {
     html! {
-        section #precision {
+        section #single {
             h2 { "Is single precision good enough for this robot?" }
             p.lead {
                 "The largest difference from our kernels in double precision, in units, over all states, joints and directions. In parentheses the share of the largest answer. "

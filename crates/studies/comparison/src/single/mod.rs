@@ -1,4 +1,4 @@
-//! Precision: is single precision good enough for this robot?
+//! Single precision: is single precision good enough for this robot?
 //!
 //! Each engine that computes in `f32`, and our own kernels in `f32`, are compared with our kernels in `f64`. The difference is told in units:
 //! newton metres of torque, radians per second squared of acceleration, radians after a second. *Drift* is the difference of two simulations
@@ -19,15 +19,11 @@ use featherbench_study::{Entry, row, unanswered};
 use serde::{Deserialize, Serialize};
 
 /// The study of single precision.
-pub struct Precision;
+pub struct Single;
 
 /// The study in the registry.
-pub const ENTRY: Entry = Entry {
-    name: "precision",
-    make: |setup| setup.made("precision", |_: NoSettings| Precision),
-    sections: section::sections,
-    words: words::WORDS,
-};
+pub const ENTRY: Entry =
+    Entry { name: "single", make: |setup| setup.made("single", |_: NoSettings| Single), sections: section::sections, words: words::WORDS };
 
 /// The simulation.
 const SECONDS: f64 = 1.0;
@@ -66,9 +62,9 @@ fn quantities(engine: &dyn Engine) -> Vec<Quantity> {
     }
 }
 
-impl Study for Precision {
+impl Study for Single {
     fn name(&self) -> &'static str {
-        "precision"
+        "single"
     }
 
     fn compares_all(&self) -> bool {
