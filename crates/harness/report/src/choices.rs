@@ -67,12 +67,12 @@ pub fn shown_for<'a>(choices: impl IntoIterator<Item = &'a [String]>) -> String 
 impl Choices {
     /// The lists, then the drawings; and the parts that are brought.
     pub fn made(self) -> (Markup, Vec<Part>) {
-        let single = self.lists.len() == 1;
+        let alone = self.lists.len() == 1;
         let is_open = |values: &[String]| values.first() == self.opening.first();
         let mut groups: Vec<Vec<&(Vec<String>, Markup)>> = Vec::new();
         for drawing in &self.drawings {
             let same = |other: &&(Vec<String>, Markup)| {
-                if single { is_open(&other.0) == is_open(&drawing.0) } else { other.0.first() == drawing.0.first() }
+                if alone { is_open(&other.0) == is_open(&drawing.0) } else { other.0.first() == drawing.0.first() }
             };
             match groups.iter_mut().find(|group| group.first().is_some_and(same)) {
                 Some(group) => group.push(drawing),
@@ -84,7 +84,7 @@ impl Choices {
             let word = |value: &str| {
                 self.lists.first().and_then(|list| list.options.iter().find(|option| option.0 == value)).map(|option| option.1.as_str())
             };
-            let first = group.first().and_then(|(values, _)| word(values.first()?)).filter(|_| !single).unwrap_or("others");
+            let first = group.first().and_then(|(values, _)| word(values.first()?)).filter(|_| !alone).unwrap_or("others");
             let part = Part {
                 name: format!("{}-{}", self.name, parts.len() + 1),
                 title: format!("{}: {first}", self.title),

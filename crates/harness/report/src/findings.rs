@@ -38,7 +38,7 @@ pub struct Found<'a> {
     pub gate: GateKind,
     /// Who it is about: of rows, the worst one.
     pub culprit: Culprit,
-    /// Its quantities in words, that of the worst row first; a single one with its measure of error.
+    /// Its quantities in words, that of the worst row first; one alone with its measure of error.
     pub quantities: Vec<String>,
     /// Number of rows.
     pub rows: usize,

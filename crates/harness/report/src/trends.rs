@@ -13,7 +13,7 @@ use crate::numbers::{count, larger, short};
 /// Change points that are listed.
 const LISTED: usize = 30;
 
-/// The trends of a suite; nothing for a single run.
+/// The trends of a suite; nothing for one run.
 pub(crate) fn section(suite: &str, runs: &[Side]) -> Markup {
     let [_, .., _] = runs else { return html! {} };
     let machines: Vec<String> = runs.iter().map(|run| format!("{}, {}", run.info.host.cpu, run.info.host.cores)).collect();

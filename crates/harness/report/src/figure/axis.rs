@@ -132,7 +132,7 @@ impl Scale {
             let (low, high) = range.unwrap_or((value, value));
             Some((smaller(low, value), larger(high, value)))
         })?;
-        // A single value gets room on both sides, others some air.
+        // One value alone gets room on both sides, others some air.
         let air = if high - low > 1e-9 * larger(low.abs(), high.abs()) { 0.04 * (high - low) } else { 0.5 };
         Some(Self { axis: axis.clone(), range: [low - air, high + air], paper })
     }
