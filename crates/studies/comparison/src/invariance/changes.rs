@@ -145,7 +145,7 @@ fn moved(robot: &mut Description) {
 }
 
 /// Of each degree of freedom, whether it turns.
-pub(super) fn turning(kind: JointType) -> Vec<bool> {
+fn turning(kind: JointType) -> Vec<bool> {
     match kind {
         JointType::Prismatic { .. } => vec![false],
         JointType::Spherical => vec![true; 3],
