@@ -140,8 +140,9 @@ fn distance(robot: &Robot, quantity: &str, first: &[f64], second: &[f64]) -> f64
         tau
     };
     let scales = ForwardScale::all(robot, &magnitudes);
-    let of_state = |(k, ((first, second), scale)): (usize, ((&[f64], &[f64]), ForwardScale))| {
-        largest(&forces(k, first), &forces(k, second), &scale.terms(first))
-    };
-    states.zip(scales).enumerate().map(of_state).fold(0.0, worst)
+    let mut far = 0.0;
+    for (k, ((first, second), scale)) in states.zip(scales).enumerate() {
+        far = worst(far, largest(&forces(k, first), &forces(k, second), &scale.terms(first)));
+    }
+    far
 }
