@@ -68,6 +68,29 @@ OVER = (
     return found.slice(0, 8);"""
 )
 
+# Cells whose text runs down letter by letter: more than five lines, of less than four letters' height in width.
+TORN = (
+    SEEN
+    + NAMED
+    + """
+    const torn = cell => {
+      const size = parseFloat(getComputedStyle(cell).fontSize), upright = cell.querySelector('span, a');
+      if (upright && getComputedStyle(upright).writingMode !== 'horizontal-tb') return false;
+      return cell.clientHeight > 7.5 * size && cell.clientWidth < 4 * size && cell.textContent.trim().length > 8;
+    };
+    return [...document.querySelectorAll('td, th')].filter(cell => seen(cell) && torn(cell)).map(name).slice(0, 8);"""
+)
+# Rows that begin beyond the page's left edge and end on it: their lines cross the page.
+STRAY = (
+    SEEN
+    + NAMED
+    + """
+    const rows = [...document.querySelectorAll('tr')].filter(seen).map(row => [row, row.getBoundingClientRect()]);
+    const clipped = row => row.closest('thead') && getComputedStyle(row.closest('thead')).clipPath !== 'none';
+    const stray = rows.filter(([row, box]) => box.left < -2 && box.right > 2 && !clipped(row));
+    return stray.map(([row]) => name(row)).slice(0, 8);"""
+)
+
 
 def laid_out(page: Browser, folder: pathlib.Path) -> Checks:
     """Check the first page with all that it can bring, and every other page, in windows of several widths."""
@@ -86,6 +109,10 @@ def laid_out(page: Browser, folder: pathlib.Path) -> Checks:
             yield f"{kind}, {width} px, has no text below {SMALLEST} px", not small, small
             over = page.run(OVER)
             yield f"{kind}, {width} px, has nothing on top of something else", not over, over
+            torn = page.run(TORN)
+            yield f"{kind}, {width} px, breaks no text letter by letter", not torn, torn
+            stray = page.run(STRAY)
+            yield f"{kind}, {width} px, has no row across its edge", not stray, stray
             if width >= DESK:
                 cut = page.run(CUT)
                 yield f"{kind}, {width} px, cuts nothing", not cut, cut
