@@ -6,29 +6,45 @@
 //! process, whose blocks alternated.
 //!
 //! Where a process has its code and data is an accident that lasts as long as it does. So an experiment is made in several processes, one
-//! after another, over the length of the study. Each gives one number. In one of ten something else went on all the while. So the least and
-//! the largest are left out. An estimate is the geometric mean of the others. Its interval is that of a trimmed mean (Yuen, Biometrika 61,
-//! 1974): whatever differs between processes or moments is in it.
+//! after another, over the length of the study. Each gives one number.
+//!
+//! A core has *states*: alone it is a third faster than beside a program on its other thread, and a state lasts for seconds. Two candidates
+//! do not suffer alike, so a ratio has states as well. A mean over states is that of chance. So only those processes count in which the core
+//! was at its fastest: [`Steady`]. In one of ten something else went on all the while. So the least and the largest of eight or more are left
+//! out.
+//!
+//! An estimate is the geometric mean of the others. Its interval is that of a trimmed mean (Yuen, Biometrika 61, 1974), or of a mean:
+//! whatever differs between processes or moments is in it. What the whole machine does from one run to the next is in no ratio, but in every
+//! time: its [`drift`] is known from the two copies of one program.
 
 use crate::robot::relocation::STACK_PLACES;
-use featherbench_results::STUDENT;
+use featherbench_results::{NORMAL, STUDENT};
 
 /// Processes of an experiment. With n of them the interval has about the half-width t·s/√n: 1.24 s for five, 0.72 s for ten, 0.47 s for twenty.
 pub const PROCESSES: usize = 10;
 /// Epochs of a process (rounds in one layout of the memory): two for each place of the stack in a cache line. Times vary more between
 /// layouts than between rounds of one layout.
 pub const EPOCHS: usize = 2 * STACK_PLACES;
-/// The share of the processes that an estimate is a mean of.
-const KEPT: f64 = 0.8;
+/// The fewest processes of an estimate: two say nothing of their spread.
+pub const LEAST: usize = 3;
+/// So many processes, or more, are without the least and the largest.
+const TRIMMED: usize = 8;
+/// The 0.975 quantiles of Student's distribution, from two degrees of freedom on.
+const STUDENTS: [f64; 6] =
+    [4.302_652_729_911_275, 3.182_446_305_284_263, 2.776_445_105_197_798_7, 2.570_581_836_614_739_5, 2.446_911_848_791_680_6, STUDENT];
 /// Two engines differ if the interval of their ratio is farther from one than this.
 pub const NOISE: f64 = 0.02;
 /// The interval of an A/A ratio must be within 1 ± this: beyond it no time of the experiment counts. A wider interval within it needs no
 /// rule: whatever made it wide made the others wide.
 pub const VOID: f64 = 0.05;
+/// Between the slowest process of one state and the fastest of the next is more than this, as a logarithm. Layouts of the memory alone make
+/// smaller steps among ten processes: their spread is about 1 %. Seen between states: 20 to 40 %.
+const STEP: f64 = 0.04;
+
 /// A value with its interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The geometric mean of the processes' numbers, without the least and the largest.
+    /// The geometric mean of the processes' numbers, of eight and more without the least and the largest.
     pub value: f64,
     /// Lower end of its 95 % interval.
     pub low: f64,
@@ -48,35 +64,49 @@ pub enum Pace {
 }
 
 impl Estimate {
-    /// The estimate of the numbers of [`PROCESSES`] processes. NaN if there are not as many, or one is not positive.
+    /// The estimate of the numbers of [`LEAST`] to [`PROCESSES`] processes. NaN of another count, or if one is not positive.
     pub fn of(numbers: &[f64]) -> Self {
-        let good = numbers.len() == PROCESSES && numbers.iter().all(|&number| number > 0.0 && number.is_finite());
+        let good = (LEAST..=PROCESSES).contains(&numbers.len()) && numbers.iter().all(|&number| number > 0.0 && number.is_finite());
         if !good {
             return Self { value: f64::NAN, low: f64::NAN, high: f64::NAN };
         }
         // Over the first, so that equal numbers give themselves to the last bit.
         let mut logs: Vec<f64> = numbers.iter().map(|number| (number / numbers[0]).ln()).collect();
         logs.sort_unstable_by(f64::total_cmp);
-        let (count, kept) = (PROCESSES as f64, &logs[1..PROCESSES - 1]);
-        let mean = kept.iter().sum::<f64>() / kept.len() as f64;
+        let (count, cut) = (logs.len(), usize::from(logs.len() >= TRIMMED));
+        let mean = |logs: &[f64]| logs.iter().sum::<f64>() / logs.len() as f64;
+        let kept = &logs[cut..count - cut];
+        let (value, share) = (mean(kept), kept.len() as f64 / count as f64);
         // The ends count as their neighbours: Winsorized.
-        logs[0] = logs[1];
-        logs[PROCESSES - 1] = logs[PROCESSES - 2];
-        let middle = logs.iter().sum::<f64>() / count;
-        let variance = logs.iter().map(|log| (log - middle) * (log - middle)).sum::<f64>() / (count - 1.0);
-        let half = STUDENT * (variance / count).sqrt() / KEPT;
-        let value = numbers[0] * mean.exp();
-        Self { value, low: value * (-half).exp(), high: value * half.exp() }
+        logs[0] = logs[cut];
+        logs[count - 1] = logs[count - 1 - cut];
+        let middle = mean(&logs);
+        let variance = logs.iter().map(|log| (log - middle) * (log - middle)).sum::<f64>() / (count - 1) as f64;
+        let freedom = count - 2 * cut - 1;
+        Self { value: numbers[0] * value.exp(), low: 0.0, high: 0.0 }
+            .with_half(STUDENTS[freedom - 2] * (variance / count as f64).sqrt() / share)
     }
 
-    /// The time of a candidate, of its blocks process by process.
-    pub fn time<'s>(processes: impl IntoIterator<Item = &'s [f64]>) -> Self {
-        Self::of(&processes.into_iter().map(undisturbed).collect::<Vec<_>>())
+    /// The same value with this half-width of the logarithm of its interval.
+    fn with_half(self, half: f64) -> Self {
+        Self { low: self.value * (-half).exp(), high: self.value * half.exp(), ..self }
     }
 
-    /// The ratio of a candidate's time to another's, of the blocks of both process by process.
-    pub fn ratio<'s>(processes: impl IntoIterator<Item = (&'s [f64], &'s [f64])>) -> Self {
-        Self::of(&processes.into_iter().map(|(of, over)| undisturbed(of) / undisturbed(over)).collect::<Vec<_>>())
+    /// The time of a candidate, of its numbers process by process.
+    pub fn time(numbers: &[f64], steady: &Steady) -> Self {
+        Self::of(&steady.pick(numbers))
+    }
+
+    /// The ratio of a candidate's time to another's, of the numbers of both process by process.
+    pub fn ratio(of: &[f64], over: &[f64], steady: &Steady) -> Self {
+        let ratios: Vec<f64> = of.iter().zip(over).map(|(of, over)| of / over).collect();
+        Self::of(&steady.pick(&ratios))
+    }
+
+    /// The time, whose interval holds the mean over runs as well, if the machine's [`drift`] is this.
+    #[must_use]
+    pub fn drifting(self, drift: f64) -> Self {
+        self.with_half((0.5 * (self.high / self.low).ln()).hypot(NORMAL * drift))
     }
 
     /// The ratio, whose interval is wider by what an A/A ratio misses 1: two copies of one program differ by so much in these processes.
@@ -104,6 +134,55 @@ impl Estimate {
         (!good)
             .then(|| format!("the second copy of featherbench over the first is {value:.4} [{low:.4}, {high:.4}]: not 1 within ± {VOID}"))
     }
+}
+
+/// The processes of an experiment that count: those in which the core was at its fastest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Steady {
+    kept: Vec<bool>,
+    /// How many were at the fastest.
+    pub fastest: usize,
+}
+
+impl Steady {
+    /// Of the levels of the processes: the mean logarithm of the times of all candidates. From the fastest on they count up to the first
+    /// step of more than 4 %. If those are fewer than [`LEAST`], all count, and there is a complaint.
+    pub fn of(levels: &[f64]) -> Self {
+        let mut sorted = levels.to_vec();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let near = |pair: &[f64]| pair[1] - pair[0] <= STEP;
+        let fastest = sorted.windows(2).position(|pair| !near(pair)).map_or(sorted.len(), |last| last + 1);
+        let kept = levels.iter().map(|&level| fastest < LEAST || level <= sorted[fastest - 1]).collect();
+        Self { kept, fastest }
+    }
+
+    /// The numbers of the processes that count.
+    pub fn pick(&self, numbers: &[f64]) -> Vec<f64> {
+        numbers.iter().zip(&self.kept).filter(|(_, kept)| **kept).map(|(&number, _)| number).collect()
+    }
+
+    /// Why no time of the experiment counts: the state of the core that should count is that of too few processes.
+    pub fn complaint(&self) -> Option<String> {
+        let Self { kept, fastest } = self;
+        (*fastest < LEAST).then(|| format!("the core was at its fastest in {fastest} of {} processes, and {LEAST} are needed", kept.len()))
+    }
+}
+
+/// How far times of the whole machine move from one moment to another: the deviation of their logarithm. Two copies of one program, of each
+/// the numbers of the processes that count, differ by their layouts of the memory and move together by this. Zero without copies.
+pub fn drift(copies: impl IntoIterator<Item = [Vec<f64>; 2]>) -> f64 {
+    let (mut sum, mut freedom) = (0.0, 0.0);
+    for copies in copies {
+        let [first, second] = copies.map(|numbers| {
+            let logs: Vec<f64> = numbers.iter().map(|number| number.ln()).collect();
+            let mean = logs.iter().sum::<f64>() / logs.len() as f64;
+            logs.into_iter().map(|log| log - mean).collect::<Vec<_>>()
+        });
+        sum += first.iter().zip(&second).map(|(a, b)| a * b).sum::<f64>();
+        freedom += first.len() as f64 - 1.0;
+    }
+    let variance = sum / freedom;
+    if variance > 0.0 { variance.sqrt() } else { 0.0 }
 }
 
 /// The lower decile of the blocks of a process. NaN without blocks, or if one is NaN.

@@ -1,7 +1,7 @@
 //! Conclusions from the blocks of a paired experiment, on machines with known noise.
 
 use featherbench_bench::measure::worst;
-use featherbench_bench::statistics::{EPOCHS, Estimate, NOISE, PROCESSES, Pace, VOID, median, quantile, undisturbed};
+use featherbench_bench::statistics::{EPOCHS, Estimate, LEAST, NOISE, PROCESSES, Pace, Steady, VOID, drift, median, quantile, undisturbed};
 use featherbench_robots::Random;
 use featherbench_spatial::Real;
 
@@ -29,7 +29,7 @@ fn interruptions(random: &mut Random, at: [usize; 2]) -> [f64; 2] {
 }
 
 /// The machine becomes 40 % slower during the run.
-fn drift(random: &mut Random, at: [usize; 2]) -> [f64; 2] {
+fn slowing(random: &mut Random, at: [usize; 2]) -> [f64; 2] {
     let part = (at[0] * ROUNDS + at[1]) as f64 / (PROCESSES * ROUNDS) as f64;
     jitter(random, at).map(|time| time * (1.0 + 0.4 * part))
 }
@@ -52,8 +52,32 @@ fn places(random: &mut Random, at: [usize; 2]) -> [f64; 2] {
     [blocks[0] * factors[0], blocks[1] * factors[1]]
 }
 
-const MACHINES: [(&str, Noise); 5] =
-    [("jitter", jitter), ("interruptions", interruptions), ("drift", drift), ("frequencies", frequencies), ("places", places)];
+/// During half of the processes another program is on the core's other thread, and the two do not suffer alike: 30 and 38 %.
+fn neighbour(random: &mut Random, at: [usize; 2]) -> [f64; 2] {
+    thread_local!(static SLOW: std::cell::Cell<bool> = const { std::cell::Cell::new(false) });
+    if at[1] == 0 {
+        SLOW.set(random.below(2) == 1);
+    }
+    let blocks = places(random, at);
+    if SLOW.get() { [1.3 * blocks[0], 1.38 * blocks[1]] } else { blocks }
+}
+
+const MACHINES: [(&str, Noise); 6] = [
+    ("jitter", jitter),
+    ("interruptions", interruptions),
+    ("slowing", slowing),
+    ("frequencies", frequencies),
+    ("places", places),
+    ("neighbour", neighbour),
+];
+
+/// The numbers of an experiment of two, process by process, and which of them count.
+fn numbers(blocks: &[(Vec<f64>, Vec<f64>)]) -> ([Vec<f64>; 2], Steady) {
+    let (reference, engine): (Vec<f64>, Vec<f64>) =
+        blocks.iter().map(|(reference, engine)| (undisturbed(reference), undisturbed(engine))).unzip();
+    let levels: Vec<f64> = reference.iter().zip(&engine).map(|(reference, engine)| 0.5 * (reference * engine).ln()).collect();
+    ([reference, engine], Steady::of(&levels))
+}
 
 /// Reference and engine on a noisy machine, process by process; the engine is slower by this factor.
 fn blocks(noise: Noise, slower: f64, seed: u64) -> Vec<(Vec<f64>, Vec<f64>)> {
@@ -69,7 +93,10 @@ fn blocks(noise: Noise, slower: f64, seed: u64) -> Vec<(Vec<f64>, Vec<f64>)> {
 }
 
 fn ratio(noise: Noise, slower: f64, seed: u64) -> Estimate {
-    Estimate::ratio(blocks(noise, slower, seed).iter().map(|(reference, engine)| (engine.as_slice(), reference.as_slice())))
+    // A run in which too few processes count is drawn again, as it would be made again.
+    let drawn = (0..).map(|again| numbers(&blocks(noise, slower, seed + 1_000_000 * again)));
+    let ([reference, engine], steady) = drawn.into_iter().find(|(_, steady)| steady.complaint().is_none()).unwrap();
+    Estimate::ratio(&engine, &reference, &steady)
 }
 
 fn count(trial: impl Fn(u64) -> bool) -> usize {
@@ -80,10 +107,12 @@ fn count(trial: impl Fn(u64) -> bool) -> usize {
 fn five_percent_are_convicted_and_half_a_percent_is_not() {
     for (name, noise) in MACHINES {
         let found = |slower: f64, finding| count(|seed| ratio(noise, slower, seed).pace() == finding);
-        assert_eq!(found(1.05, Pace::Slower), TRIALS, "{name}");
+        // With three processes in the faster state, as one run in eight has them, the interval is about ± 1.7 %, and seldom more than 3 %.
+        let due = if name == "neighbour" { TRIALS - TRIALS / 40 } else { TRIALS };
+        assert!(found(1.05, Pace::Slower) >= due, "{name}");
         assert_eq!(found(1.005, Pace::Alike), TRIALS, "{name}");
         assert_eq!(found(1.0, Pace::Alike), TRIALS, "{name}");
-        assert_eq!(found(1.0 / 1.05, Pace::Faster), TRIALS, "{name}");
+        assert!(found(1.0 / 1.05, Pace::Faster) >= due, "{name}");
     }
 }
 
@@ -105,8 +134,8 @@ fn the_interval_holds_the_true_ratio_as_often_as_it_says() {
 fn an_interval_within_one_process_would_be_too_narrow() {
     let held = count(|seed| {
         let blocks = blocks(places, 1.03, seed);
-        let of_one = |part: usize| (&blocks[0].1[part * 3..][..3], &blocks[0].0[part * 3..][..3]);
-        let Estimate { low, high, .. } = Estimate::ratio((0..PROCESSES).map(of_one));
+        let of_one = |part: usize| undisturbed(&blocks[0].1[part * 3..][..3]) / undisturbed(&blocks[0].0[part * 3..][..3]);
+        let Estimate { low, high, .. } = Estimate::of(&(0..PROCESSES).map(of_one).collect::<Vec<_>>());
         low <= 1.03 && 1.03 <= high
     });
     assert!(held < 340, "{held} of {TRIALS}");
@@ -142,12 +171,10 @@ fn the_ratio_of_medians_is_misled_where_that_of_deciles_is_not() {
     assert!(medians > 1.5 * deciles, "deciles {deciles}, medians {medians}");
 }
 
-/// The interval of a trimmed mean (Yuen, Biometrika 61, 1974). The quantile by the density of Student's distribution with seven degrees of
-/// freedom, (1 + t²/7)⁻⁴ but for a factor, and Simpson's rule.
-#[test]
-fn the_interval_is_that_of_a_trimmed_mean() {
-    assert_eq!(PROCESSES, 10);
-    let density = |t: f64| (1.0 + t * t / 7.0).powi(-4);
+/// The share of Student's distribution with so many degrees of freedom below t: its density, (1 + t²/f)^(−(f+1)/2) but for a factor, and
+/// Simpson's rule.
+fn below(t: f64, freedom: f64) -> f64 {
+    let density = |t: f64| (-0.5 * (freedom + 1.0) * (1.0 + t * t / freedom).ln()).exp();
     // t = u/(1 − u²) takes u from −1 to 1 over all numbers.
     let until = |t: f64| {
         let end = if t.is_finite() { (-1.0 + (1.0 + 4.0 * t * t).sqrt()) / (2.0 * t) } else { 1.0 - 1e-9 };
@@ -161,6 +188,13 @@ fn the_interval_is_that_of_a_trimmed_mean() {
             })
             .sum::<f64>()
     };
+    until(t) / until(f64::INFINITY)
+}
+
+/// Of ten it is the interval of a trimmed mean (Yuen, Biometrika 61, 1974), with seven degrees of freedom.
+#[test]
+fn the_interval_of_all_processes_is_that_of_a_trimmed_mean() {
+    assert_eq!(PROCESSES, 10);
     let logs = [0.3, -0.1, 0.2, 0.0, 0.4, -0.2, 0.1, 0.05, -0.3, 0.25];
     let Estimate { value, low, high } = Estimate::of(&logs.map(f64::exp));
     // Without −0.3 and 0.4. With their neighbours instead, −0.2 and 0.3, for the deviation.
@@ -170,9 +204,83 @@ fn the_interval_is_that_of_a_trimmed_mean() {
     let deviation = (ends.iter().map(|log| (log - middle).powi(2)).sum::<f64>() / 9.0).sqrt() / 0.8;
     assert!((value.ln() - mean).abs() < 1e-15);
     for (end, share) in [(low, 0.025), (high, 0.975)] {
-        let found = until((end.ln() - mean) / (deviation / 10.0_f64.sqrt())) / until(f64::INFINITY);
+        let found = below((end.ln() - mean) / (deviation / 10.0_f64.sqrt()), 7.0);
         assert!((found - share).abs() < 1e-10, "{found} below the end of {share}");
     }
+}
+
+/// Of few it is the interval of a mean. Of any count it holds 95 % of normal numbers.
+#[test]
+fn the_interval_of_fewer_processes_holds_as_much() {
+    for count in LEAST..PROCESSES {
+        let logs: Vec<f64> = (0..count).map(|k| 0.01 * ((k * k) as f64).sin()).collect();
+        let Estimate { value, high, .. } = Estimate::of(&logs.iter().map(|log| log.exp()).collect::<Vec<_>>());
+        if count < 8 {
+            let mean = logs.iter().sum::<f64>() / count as f64;
+            let variance = logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / (count - 1) as f64;
+            let found = below((high / value).ln() / (variance / count as f64).sqrt(), count as f64 - 1.0);
+            assert!((value.ln() - mean).abs() < 1e-15 && (found - 0.975).abs() < 1e-10, "{count}: {found}");
+        }
+        let mut random = Random::new(count as u64, 11);
+        let mut drawn = || {
+            let numbers: Vec<f64> = (0..count).map(|_| (0.01 * normal(&mut random)).exp()).collect();
+            let Estimate { low, high, .. } = Estimate::of(&numbers);
+            low <= 1.0 && 1.0 <= high
+        };
+        let held = (0..4000).filter(|_| drawn()).count();
+        // 3800 ± 14: four deviations, and half a percent that the trimmed mean of eight may miss.
+        assert!((3725..=3856).contains(&held), "{count}: {held} of 4000");
+    }
+}
+
+/// The slower state has no part in the ratio, and a run without enough of the faster says so.
+#[test]
+fn processes_of_the_slower_state_do_not_count() {
+    let level = |slow: &[usize]| -> Vec<f64> {
+        (0..PROCESSES).map(|process| 0.003 * process as f64 + if slow.contains(&process) { 0.2 } else { 0.0 }).collect()
+    };
+    let all: Vec<f64> = (0..PROCESSES).map(|process| process as f64).collect();
+    assert_eq!(Steady::of(&level(&[])).pick(&all), all);
+    let some = Steady::of(&level(&[1, 2, 3, 5, 8]));
+    assert_eq!((some.pick(&all), some.fastest, some.complaint()), (vec![0.0, 4.0, 6.0, 7.0, 9.0], 5, None));
+    let few = Steady::of(&level(&[0, 1, 2, 3, 5, 6, 8, 9]));
+    assert_eq!((few.pick(&all), few.fastest), (all.clone(), 2));
+    assert!(few.complaint().is_some_and(|reason| reason.contains("2 of 10")));
+    assert!(Steady::of(&[f64::NAN; PROCESSES]).complaint().is_some());
+    // A mean over both states would be that of chance: 3 % and more from the truth in most runs.
+    let misled = count(|seed| {
+        let blocks = blocks(neighbour, 1.0, seed);
+        let ratios: Vec<f64> = blocks.iter().map(|(reference, engine)| undisturbed(engine) / undisturbed(reference)).collect();
+        Estimate::of(&ratios).value > 1.02
+    });
+    assert!(misled > TRIALS / 2, "{misled} of {TRIALS}");
+}
+
+/// A machine whose level moves from run to run by as much as from process to process: the time's interval holds the mean over runs.
+#[test]
+fn a_drift_is_known_from_two_copies() {
+    let of_run = |seed: u64| {
+        let mut random = Random::new(seed, 5);
+        let run = 0.01 * normal(&mut random);
+        // Twelve experiments of two copies in one robot.
+        let experiment = |random: &mut Random| -> [Vec<f64>; 2] {
+            let levels: Vec<f64> = (0..PROCESSES).map(|_| run + 0.01 * normal(random)).collect();
+            [(); 2].map(|()| levels.iter().map(|level| (level + 0.005 * normal(random)).exp()).collect())
+        };
+        let copies: Vec<[Vec<f64>; 2]> = (0..12).map(|_| experiment(&mut random)).collect();
+        let found = drift(copies.iter().cloned());
+        let time = Estimate::time(&copies[0][0], &Steady::of(&[0.0; PROCESSES]));
+        (found, [time, time.drifting(found)].map(|Estimate { low, high, .. }| low <= 1.0 && 1.0 <= high))
+    };
+    let runs: Vec<_> = (0..TRIALS as u64).map(of_run).collect();
+    let mean = runs.iter().map(|(found, _)| found * found).sum::<f64>() / TRIALS as f64;
+    // 120 products in each of 400 runs: half a percent of the variance.
+    assert!((mean.sqrt() - 0.01).abs() < 1e-4, "{}", mean.sqrt());
+    let [without, with] = [0, 1].map(|which| runs.iter().filter(|(_, held)| held[which]).count());
+    assert!(without < 300 && (362..=398).contains(&with), "{without} and {with} of {TRIALS}");
+    assert_eq!(drift([]), 0.0);
+    // Copies that move against each other know of no drift.
+    assert_eq!(drift([[vec![1.0, 2.0], vec![2.0, 1.0]]]), 0.0);
 }
 
 /// One process during which something else went on changes neither the value nor the interval by much.
@@ -187,10 +295,12 @@ fn one_process_out_of_line_is_left_out() {
 }
 
 #[test]
-fn an_estimate_needs_every_process() {
+fn an_estimate_needs_three_processes() {
     let of = |numbers: &[f64]| Estimate::of(numbers);
-    assert_eq!(of(&[7.3; PROCESSES]), Estimate { value: 7.3, low: 7.3, high: 7.3 });
-    for bad in [&[][..], &[7.0], &[7.0; PROCESSES - 1], &[7.0; PROCESSES + 1]] {
+    for count in LEAST..=PROCESSES {
+        assert_eq!(of(&vec![7.3; count]), Estimate { value: 7.3, low: 7.3, high: 7.3 });
+    }
+    for bad in [&[][..], &[7.0], &[7.0; LEAST - 1], &[7.0; PROCESSES + 1]] {
         assert!(of(bad).value.is_nan() && of(bad).complaint().is_some() && of(bad).pace() == Pace::Alike, "{bad:?}");
     }
     for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
@@ -205,11 +315,13 @@ fn a_process_counts_by_its_lower_decile() {
     // 2.6 and 1.3: the ratio of the medians, 5 over 2, is another.
     let (engine, reference) = ([6.0, 4.0, 2.0, 6.0], [1.0, 2.0, 2.0, 12.0]);
     assert_eq!([undisturbed(&engine), undisturbed(&reference)], [2.6, 1.3]);
-    let ratio = Estimate::ratio((0..PROCESSES).map(|_| (&engine[..], &reference[..])));
+    let of = |blocks: &[f64]| vec![undisturbed(blocks); PROCESSES];
+    let all = Steady::of(&[0.0; PROCESSES]);
+    let ratio = Estimate::ratio(&of(&engine), &of(&reference), &all);
     assert_eq!(ratio, Estimate { value: 2.0, low: 2.0, high: 2.0 });
-    assert_eq!(Estimate::time((0..PROCESSES).map(|_| &engine[..])).value, 2.6);
+    assert_eq!(Estimate::time(&of(&engine), &all).value, 2.6);
     for bad in [&[1.0, f64::NAN][..], &[]] {
-        assert!(Estimate::ratio((0..PROCESSES).map(|_| (&engine[..], bad))).high.is_nan());
+        assert!(Estimate::ratio(&of(&engine), &of(bad), &all).high.is_nan());
     }
 }
 

@@ -12,8 +12,11 @@ pub const ERROR_FLOOR: f64 = 8.9e-16;
 /// Two times differ if their ratio is beyond this, and chance is not a likely cause.
 pub const TIME_NOISE: f64 = 0.01;
 /// Half-widths of the intervals of times are so many standard errors: the 0.975 quantile of Student's distribution with seven degrees of
-/// freedom, of ten processes without the least and the largest. Intervals hold 95 %.
+/// freedom, of ten processes without the least and the largest. Intervals hold 95 %. Of fewer processes they are wider, and their errors count
+/// as larger.
 pub const STUDENT: f64 = 2.364_624_251_592_784_4;
+/// The 0.975 quantile of the normal distribution: the half-width of an interval over a deviation that is known.
+pub const NORMAL: f64 = 1.959_963_984_540_054_2;
 /// The share of the times that are told as changed, and changed by chance alone, is on average at most this.
 ///
 /// Every time has its *p-value*: how likely chance makes a difference as large, by Student's distribution with 14 degrees of freedom. From the
@@ -83,10 +86,10 @@ pub fn diff<'a>(before: &'a [Row], after: &'a [Row]) -> Diff<'a> {
     let new_rows: BTreeMap<&Key, &Row> = new.iter().map(|(key, row)| (key, *row)).collect();
     let both = || new.iter().filter_map(|(key, row)| Some((*old_rows.get(key)?, *row)));
     let common = common(both());
-    let shift = |row: &Row| if is_absolute(row) { common } else { 1.0 };
+    let shift = |row: &Row| common.filter(|_| is_absolute(row));
     let times = both().filter(|(was, row)| is_time(row) && was.valid && row.valid && was.verdict == row.verdict);
     let level = level(times.filter_map(|(was, row)| p_value(was, row, shift(row))).collect());
-    let mut diff = Diff { changes: Vec::new(), compared: 0, invalid: 0, common };
+    let mut diff = Diff { changes: Vec::new(), compared: 0, invalid: 0, common: common.unwrap_or(1.0) };
     for (key, row) in &new {
         let Some(&was) = old_rows.get(key) else {
             diff.changes.push(Changed { change: Change::New, before: None, after: Some(row) });
@@ -176,12 +179,12 @@ fn is_absolute(row: &Row) -> bool {
     row.metric == "ns_per_call"
 }
 
-/// The median ratio of the absolute times that count in both runs; 1 if there are few.
-fn common<'a>(pairs: impl Iterator<Item = (&'a Row, &'a Row)>) -> f64 {
+/// The median ratio of the absolute times that count in both runs, if there are not few.
+fn common<'a>(pairs: impl Iterator<Item = (&'a Row, &'a Row)>) -> Option<f64> {
     let both = pairs.filter(|(was, row)| is_time(row) && is_absolute(row) && was.valid && row.valid);
     let mut ratios: Vec<f64> = both.filter_map(|(was, row)| Some(row.value? / was.value?)).filter(|ratio| ratio.is_finite()).collect();
     ratios.sort_unstable_by(f64::total_cmp);
-    if ratios.len() < COMMON { 1.0 } else { ratios[ratios.len() / 2] }
+    (ratios.len() >= COMMON).then(|| ratios[ratios.len() / 2])
 }
 
 /// The half-width of the logarithm of a time's interval; zero without one. NaN if an end is NaN.
@@ -192,9 +195,25 @@ pub(crate) fn half_width(row: &Row) -> f64 {
     if value.is_nan() || ends == [value; 2] { 0.0 } else { 0.5 * (ends[0] / ends[1]).ln() }
 }
 
+/// The half-width without what the whole machine does from run to run, the parameter `drift` of a time: a common factor holds that.
+fn own_half_width(row: &Row) -> f64 {
+    /// That of the parameters; older runs have none.
+    #[derive(Deserialize)]
+    struct Params {
+        #[serde(default)]
+        drift: f64,
+    }
+    let drift = serde_json::from_str(&row.params).map_or(0.0, |Params { drift }| NORMAL * drift);
+    let half = half_width(row);
+    let own = half * half - drift * drift;
+    // A NaN stays one. Of an interval that is all drift, rounding may leave less than zero.
+    if own < 0.0 { 0.0 } else { own.sqrt() }
+}
+
 /// How likely chance makes the logarithm of the ratio of two times, over a common factor, as large as it is. `None` if it is NaN.
-fn p_value(was: &Row, row: &Row, common: f64) -> Option<f64> {
-    let log = (row.value? / was.value? / common).ln().abs();
+fn p_value(was: &Row, row: &Row, common: Option<f64>) -> Option<f64> {
+    let log = (row.value? / was.value? / common.unwrap_or(1.0)).ln().abs();
+    let half_width = if common.is_some() { own_half_width } else { half_width };
     let error = half_width(was).hypot(half_width(row)) / STUDENT;
     // A difference of two numbers without intervals is one.
     let t = if log == 0.0 { 0.0 } else { log / error };
@@ -221,8 +240,8 @@ fn level(mut p_values: Vec<f64>) -> f64 {
 
 /// Whether two times differ by more than a common factor: their ratio over it is beyond the noise, and chance is not a likely cause; or one of
 /// the two is NaN.
-fn apart(before: &Row, after: &Row, common: f64, level: f64) -> bool {
+fn apart(before: &Row, after: &Row, common: Option<f64>, level: f64) -> bool {
     let (value, other) = (after.value.unwrap_or(f64::NAN), before.value.unwrap_or(f64::NAN));
-    let log = (value / other / common).ln().abs();
+    let log = (value / other / common.unwrap_or(1.0)).ln().abs();
     value.is_nan() != other.is_nan() || log > TIME_NOISE.ln_1p() && p_value(before, after, common).is_some_and(|p| p <= level)
 }

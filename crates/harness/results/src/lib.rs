@@ -38,7 +38,7 @@ pub use apart::Apart;
 pub use checksum::{CHECKSUMS_NAME, Checksums, checksum, checksum_of, seal, unsealed};
 pub use columns::{COLUMNS, CSV_NAME, Column, ColumnType, Row, schema_json};
 pub use dictionary::{Dictionary, Named, Term};
-pub use diff::{COMMON, Change, Changed, Diff, ERROR_FACTOR, ERROR_FLOOR, FALSE_SHARE, STUDENT, TIME_NOISE, diff};
+pub use diff::{COMMON, Change, Changed, Diff, ERROR_FACTOR, ERROR_FLOOR, FALSE_SHARE, NORMAL, STUDENT, TIME_NOISE, diff};
 pub use disk::{atomic_write, atomic_write_with, quick_write};
 pub use drawing::{DRAWINGS_NAME, Drawing, DrawnBody, drawings_to_text, parse_drawings};
 pub use error::ResultsError;

@@ -1,7 +1,7 @@
 //! What counts as a change between two runs.
 
 use featherbench_results::{
-    COMMON, Change, ERROR_FACTOR, ERROR_FLOOR, FALSE_SHARE, Kind, Relation, Row, STUDENT, TIME_NOISE, Verdict, diff,
+    COMMON, Change, ERROR_FACTOR, ERROR_FLOOR, FALSE_SHARE, Kind, NORMAL, Relation, Row, STUDENT, TIME_NOISE, Verdict, diff,
 };
 
 fn error(model: &str, value: f64, bound: f64) -> Row {
@@ -96,6 +96,20 @@ fn times_change_beyond_the_noise_and_beyond_chance() {
         time(value, 0.005).into_iter().map(|row| Row { metric: row.metric.replace("ns_per_call", "ratio"), ..row }).collect::<Vec<_>>()
     };
     assert_eq!(changes(&ratios(2.0), &ratios(2.2)), [Change::Time]);
+}
+
+/// What moves all times of a machine is in their intervals, and in the factor that they have in common. A single time keeps it.
+#[test]
+fn the_drift_of_a_machine_is_no_noise_of_times_over_a_common_factor() {
+    let drifting = |ratios: &[f64]| -> Vec<Row> {
+        let wide = 0.01_f64.hypot(NORMAL * 0.02).exp() - 1.0;
+        times(ratios, wide).into_iter().map(|row| Row { params: r#"{"drift":0.02,"states":7}"#.into(), ..row }).collect()
+    };
+    let [mut slower, all] = [[1.0; COMMON], [1.05; COMMON]];
+    slower[3] = 1.05;
+    assert_eq!(changes(&drifting(&[1.0; COMMON]), &drifting(&slower)), [Change::Time]);
+    assert_eq!(changes(&drifting(&[1.0; COMMON]), &drifting(&all)), []);
+    assert_eq!(changes(&drifting(&[1.0]), &drifting(&[1.05])), [], "of few times there is no common factor");
 }
 
 /// One change among many times needs more evidence than each of many changes (Benjamini and Hochberg).

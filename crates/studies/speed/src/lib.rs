@@ -16,4 +16,4 @@ pub use contact_timing::ContactTiming;
 pub use growth::{Growth, Settings as GrowthSettings};
 pub use operations::OperationCounts;
 pub use scaling::{Scaling, Settings as ScalingSettings};
-pub use timing::{InstructionCounts, Settings as TimingSettings, Timing, instructions};
+pub use timing::{InstructionCounts, Settings as TimingSettings, Timing, disturbed, instructions};

@@ -6,6 +6,7 @@ use featherbench_report::figure::{Axis, Line, Point, Series, style};
 use featherbench_report::numbers::{aligned, count, grouped, short};
 use featherbench_report::{Lead, Overview, Part, Section, engine, labels, robot};
 use featherbench_results::{Errors, Ranked, Ranking, Row, RunInfo, Times};
+use featherbench_speed::disturbed;
 use featherbench_study::figures::{drawing, errors};
 use maud::{Markup, html};
 
@@ -28,11 +29,12 @@ pub(crate) fn section(run: &RunInfo, rows: &[Row], overview: &Overview) -> Optio
     let (drawn, mut parts) = figure(&ranking);
     let (recorded, of_machines) = recorded(overview, &run.recorded_times);
     parts.extend(of_machines);
-    let lead = Lead { body: html! { (table(run, overview, &ranking)) (drawn) }, lines: lines(run, &ranking) };
+    let note = note(disturbed(run, rows), &ranking);
+    let lead = Lead { body: html! { (table(&note, overview, &ranking)) (drawn) }, lines: lines(&note, &ranking) };
     let body = html! {
         section #engines {
             h2 { "Engines" }
-            p.lead { (coded(&note(run, &ranking))) }
+            p.lead { (coded(&note)) }
             div.scroll { (whole(overview, &ranking)) }
             (recorded)
         }
@@ -69,7 +71,7 @@ fn ratio_of(times: &Times) -> String {
 }
 
 /// The table of the first page: a line for each engine.
-fn table(run: &RunInfo, overview: &Overview, ranking: &Ranking) -> Markup {
+fn table(note: &str, overview: &Overview, ranking: &Ranking) -> Markup {
     let ranked = ranking.engines.iter();
     html! {
         div.scroll.of-ranking { table.compact.ranking #ranking {
@@ -96,7 +98,7 @@ fn table(run: &RunInfo, overview: &Overview, ranking: &Ranking) -> Markup {
                 }
             } }
         } }
-        p.note { (coded(&note(run, ranking))) " " a href="#engines" { "Every number" } "." }
+        p.note { (coded(note)) " " a href="#engines" { "Every number" } "." }
     }
 }
 
@@ -125,8 +127,8 @@ fn time_cell(of: &Ranked, quantity: &str) -> Markup {
     }
 }
 
-/// What the numbers are, in two or three sentences, and whether the machine was busy.
-fn note(run: &RunInfo, ranking: &Ranking) -> String {
+/// What the numbers are, in two or three sentences, and what disturbed the times.
+fn note(disturbed: Option<String>, ranking: &Ranking) -> String {
     let most = |number: fn(&Errors) -> usize| ranking.engines.iter().flat_map(|of| of.errors.values()).map(number).max();
     let mut text = String::new();
     if let Some((robots, states)) = most(|errors| errors.robots).zip(most(|errors| errors.states)) {
@@ -150,7 +152,7 @@ fn note(run: &RunInfo, ranking: &Ranking) -> String {
             count(machines, "other machine")
         ),
     };
-    text + &run.busy().map(|busy| format!(" {busy}")).unwrap_or_default()
+    text + &disturbed.map(|sentences| format!(" {sentences}")).unwrap_or_default()
 }
 
 /// A text in which what stands between backticks is code.
@@ -224,7 +226,7 @@ fn figure(ranking: &Ranking) -> (Markup, Vec<Part>) {
 }
 
 /// The table of the terminal.
-fn lines(run: &RunInfo, ranking: &Ranking) -> Vec<String> {
+fn lines(note: &str, ranking: &Ranking) -> Vec<String> {
     let heads = ["engine", "right", "FD error", "worst", "on", "time FD", "ID", "M", "∂FD", "gravest finding"].map(str::to_owned);
     let line = |of: &Ranked| {
         let errors = of.errors.get("fd");
@@ -246,6 +248,6 @@ fn lines(run: &RunInfo, ranking: &Ranking) -> Vec<String> {
     };
     let table: Vec<_> = std::iter::once(heads).chain(ranking.engines.iter().map(line)).collect();
     let mut lines: Vec<String> = aligned(&table, &[0, 1, 4, 9]).into_iter().map(|line| format!("  {line}")).collect();
-    lines.push(format!("  {}", note(run, ranking)));
+    lines.push(format!("  {note}"));
     lines
 }

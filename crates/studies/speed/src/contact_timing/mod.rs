@@ -87,7 +87,8 @@ impl ContactTiming {
     fn cells(&self, context: &Context, stand: Stand) -> Vec<Cell> {
         let Some(own) = context.engine(OWN) else { return Vec::new() };
         let identity = own.identity();
-        let of_robot = OfRobot { contacts: stand.contacts(), rank: stand.rank(), seconds: self.settings.seconds, own_model: None };
+        let Settings { seconds, .. } = self.settings;
+        let of_robot = OfRobot { contacts: stand.contacts(), rank: stand.rank(), seconds, own_model: None, drift: None };
         let candidates = self.candidates(context, stand);
         let of_process = |process| {
             let params = Params { of_robot: of_robot.clone(), seed: context.seed, target: TARGET, process, candidates: candidates.clone() };
@@ -135,6 +136,9 @@ struct OfRobot {
     seconds: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     own_model: Option<Value>,
+    /// Of a time: the deviation by which the whole machine moves from run to run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    drift: Option<f64>,
 }
 
 /// The outcome of a cell.

@@ -4,7 +4,7 @@ use super::candidates::{Candidate, Told, WHOLE};
 use super::{Measured, OfRobot, Params, TARGET};
 use crate::timing::rows::{estimated, judged};
 use crate::timing::samples::Processes;
-use featherbench_bench::statistics::Estimate;
+use featherbench_bench::statistics::{Estimate, drift};
 use featherbench_bench::{Finished, Gates, NoAnswer, params};
 use featherbench_results::{Kind, Relation, Row, Verdict};
 use featherbench_study::{case_row, unanswered};
@@ -19,7 +19,7 @@ pub(super) fn rows(gates: &Gates, processes: &[Finished]) -> Vec<Row> {
             measured.ok_or_else(|| NoAnswer::Failed("the outcome holds no samples".into()))
         };
         let mut measured = processes.iter().map(of).collect::<Result<Vec<_>, _>>()?;
-        let samples = Processes(measured.iter().map(|measured| measured.samples.clone()).collect());
+        let samples = Processes::new(measured.iter().map(|measured| measured.samples.clone()).collect());
         Ok((of_robot, candidates, measured.swap_remove(0), samples))
     };
     let params = cell.params::<OfRobot>().map(|params| params::text(&params)).unwrap_or_default();
@@ -30,8 +30,9 @@ pub(super) fn rows(gates: &Gates, processes: &[Finished]) -> Vec<Row> {
     };
     let control = candidates.iter().position(|candidate| candidate.control).map(|which| {
         let ratio = samples.ratio(which, 0);
-        (ratio, ratio.complaint())
+        (ratio, samples.steady.complaint().or_else(|| ratio.complaint()))
     });
+    let drift = drift(candidates.iter().position(|candidate| candidate.control).map(|which| samples.beside_the_first(which)));
     let widened = |ratio: Estimate| control.as_ref().map_or(ratio, |(control, _)| ratio.widened(control));
     let noise = match &control {
         Some((_, complaint)) => complaint.clone(),
@@ -45,9 +46,8 @@ pub(super) fn rows(gates: &Gates, processes: &[Finished]) -> Vec<Row> {
         let Candidate { engine, version, method, own_model, .. } = candidate.clone();
         let mut blank = Row { engine, engine_version: version, method, ..blank.clone() };
         let own = !own_model.is_null();
-        if own {
-            blank.params = params::text(&OfRobot { own_model: Some(own_model), ..of_robot.clone() });
-        }
+        let params = OfRobot { own_model: Some(own_model).filter(|_| own), ..of_robot.clone() };
+        blank.params = params::text(&params);
         let of = |metric: &str, unit: &str, kind| Row { metric: metric.into(), unit: unit.into(), kind, ..blank.clone() };
         if candidate.control {
             let row = Row { reference: format!("{usual}, its first copy"), ..of("control", "1", Kind::Measured) };
@@ -74,12 +74,12 @@ pub(super) fn rows(gates: &Gates, processes: &[Finished]) -> Vec<Row> {
         } else {
             rows.push(gates.explain(row.gated(residual, Relation::Le, TARGET)));
         }
-        let timed = of("ns_per_call", "ns", Kind::Measured);
+        let timed = Row { params: params::text(&OfRobot { drift: Some(drift), ..params }), ..of("ns_per_call", "ns", Kind::Measured) };
         if !samples.answered(which) {
             rows.push(timed.without_value(Verdict::Error, "it stopped answering while it was timed"));
             continue;
         }
-        rows.push(judged(estimated(timed, &samples.time(which)), noise));
+        rows.push(judged(estimated(timed, &samples.time(which, drift)), noise));
         if let Some(whole) = whole.filter(|_| own) {
             // From M and J on, as the engine's: but another model at another residual, so by a name of its own.
             let ratio = widened(samples.ratio(which, whole));

@@ -5,7 +5,7 @@ use serde_json::json;
 
 fn cell(candidates: &[(&str, &str, bool)]) -> Cell {
     let of = |(engine, method, control): &(&str, &str, bool)| Candidate::new(engine, method, *control);
-    let of_robot = OfRobot { contacts: 4, rank: 12, seconds: 1.0, own_model: None };
+    let of_robot = OfRobot { contacts: 4, rank: 12, seconds: 1.0, own_model: None, drift: None };
     let params = Params { of_robot, seed: 1, target: TARGET, process: 0, candidates: candidates.iter().map(of).collect() };
     Cell::of_case(STUDY, "quadruped, 4 contacts", ("featherbench", "1"), QUANTITY, SOLVERS[0], params)
 }

@@ -32,7 +32,7 @@ use featherbench_study::{Entry, Made, Setup};
 use machine::{Machine, Pinned};
 use protocol::{Budget, Ready};
 use samples::Candidate;
-pub use section::{InstructionCounts, instructions};
+pub use section::{InstructionCounts, disturbed, instructions};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::time::Instant;

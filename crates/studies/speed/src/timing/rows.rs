@@ -4,7 +4,7 @@ use super::machine::Machine;
 use super::samples::{Candidate, Processes, Samples};
 use super::{CellKind, MACHINE, Paired, REFERENCE, check};
 use featherbench_bench::measure::worst;
-use featherbench_bench::statistics::{Estimate, Pace, quantile_of};
+use featherbench_bench::statistics::{Estimate, Pace, drift, quantile_of};
 use featherbench_bench::{Cell, Finished, Gates, NoAnswer, Outcome, Robot, params};
 use featherbench_results::{Kind, Relation, Row, Verdict};
 use featherbench_spatial::peak::LANES;
@@ -29,10 +29,10 @@ pub(super) fn rows(gates: &Gates, robot: &Robot, best_of: &[String], finished: &
     // The cells of an experiment stand together, process after process.
     let same = |a: &(&Finished, Paired), b: &(&Finished, Paired)| a.0.0.path() == b.0.0.path() && a.1.cache == b.1.cache;
     let experiments: Vec<Experiment> = processes.chunk_by(same).map(|processes| Experiment::of(robot, processes)).collect();
-    let noise = noise(&experiments);
+    let (noise, drift) = (noise(&experiments), drift(experiments.iter().filter_map(Experiment::copies)));
     let checked = checks.iter().filter_map(|check| check.row.clone());
     let timed = experiments.iter().flat_map(|experiment| {
-        let mut rows = experiment.rows(&checks, noise.as_deref());
+        let mut rows = experiment.rows(&checks, noise.as_deref(), drift);
         rows.extend(experiment.beside(best_of, &checks, noise.as_deref()));
         rows
     });
@@ -42,7 +42,7 @@ pub(super) fn rows(gates: &Gates, robot: &Robot, best_of: &[String], finished: &
 /// Why no time of this robot counts: too many of its A/A ratios show that the machine was not quiet, or are missing.
 fn noise(experiments: &[Experiment]) -> Option<String> {
     let timed = || experiments.iter().filter(|experiment| experiment.samples.is_ok());
-    let (controls, bad) = (timed().count(), timed().filter(|experiment| experiment.noise().is_some()).count());
+    let (controls, bad) = (timed().count(), timed().filter(|experiment| experiment.missed().is_some()).count());
     (bad * BAD_CONTROLS > controls)
         .then(|| format!("{bad} of {controls} A/A controls of this robot are far from 1: the machine was not quiet"))
 }
@@ -167,8 +167,9 @@ impl<'a> Experiment<'a> {
             Err(no_answer) => Err(no_answer.to_string()),
             Ok(_) => Samples::of_outcome(outcome, candidates.len()).ok_or_else(|| "the outcome holds no samples".to_owned()),
         });
-        let samples = samples.collect::<Result<Vec<_>, _>>().map(Processes);
-        let params = RowParams { states: *states, seconds: *seconds, ..RowParams::default() };
+        let samples = samples.collect::<Result<Vec<_>, _>>().map(Processes::new);
+        let fastest = samples.as_ref().ok().map(|samples| samples.steady.fastest).filter(|&fastest| fastest < processes.len());
+        let params = RowParams { states: *states, seconds: *seconds, fastest, ..RowParams::default() };
         let blank = Row { kind: Kind::Measured, cache: cache.clone(), params: params::text(&params), ..row(cell, robot) };
         let control = match (candidates.iter().position(|candidate| candidate.control), &samples) {
             (Some(which), Ok(samples)) if samples.answered(which) && samples.answered(0) => Ok(samples.ratio(which, 0)),
@@ -178,12 +179,25 @@ impl<'a> Experiment<'a> {
         Self { cell, params, blank, candidates: candidates.clone(), samples, control }
     }
 
-    /// Why no time of this experiment counts, if its A/A ratio shows that or is missing.
+    /// Why no time of this experiment counts: its A/A ratio, or too few processes in one state of the core.
     pub(super) fn noise(&self) -> Option<String> {
+        let unsteady = self.samples.as_ref().ok().and_then(|samples| samples.steady.complaint());
+        unsteady.or_else(|| self.missed())
+    }
+
+    /// What the A/A ratio shows against the experiment, if it does or is missing.
+    fn missed(&self) -> Option<String> {
         match &self.control {
             Ok(control) => control.complaint(),
             Err(reason) => Some((*reason).to_owned()),
         }
+    }
+
+    /// The numbers of the two copies of our usual method, if they say how the machine drifts.
+    fn copies(&self) -> Option<[Vec<f64>; 2]> {
+        let which = self.candidates.iter().position(|candidate| candidate.control)?;
+        let samples = self.samples.as_ref().ok()?;
+        (self.control.is_ok() && samples.steady.complaint().is_none()).then(|| samples.beside_the_first(which))
     }
 
     /// The ratio of a candidate's time to another's; the A/A ratio widens its interval.
@@ -192,7 +206,7 @@ impl<'a> Experiment<'a> {
         self.control.as_ref().map_or(ratio, |control| ratio.widened(control))
     }
 
-    fn rows(&self, checks: &[Check], noise: Option<&str>) -> Vec<Row> {
+    fn rows(&self, checks: &[Check], noise: Option<&str>, drift: f64) -> Vec<Row> {
         let samples = match &self.samples {
             Ok(samples) => samples,
             Err(reason) => return vec![self.blank.clone().without_value(Verdict::Error, reason.clone())],
@@ -232,9 +246,9 @@ impl<'a> Experiment<'a> {
             }
             let complaint = complaint.or(noise).or(own_noise.as_deref());
             let blank = Row { estimated: candidate.estimate, ..blank };
-            let params = self.params.with_deciles(&samples.all(which));
+            let params = RowParams { drift: Some(drift), ..self.params.clone() }.with_deciles(&samples.all(which));
             let timed = Row { metric: "ns_per_call".into(), unit: "ns".into(), params, ..blank.clone() };
-            rows.push(judged(estimated(timed, &samples.time(which)), complaint));
+            rows.push(judged(estimated(timed, &samples.time(which, drift)), complaint));
             if which > 0 {
                 let ratio = self.ratio(samples, which, 0);
                 let blank = Row { unit: "1".into(), reference: usual, ..blank };
@@ -267,6 +281,12 @@ pub(super) struct RowParams {
     pub(super) p10: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) p90: Option<f64>,
+    /// Of a time: the deviation by which the whole machine moves from run to run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) drift: Option<f64>,
+    /// How many of the processes count: those in which the core was at its fastest. Absent if all do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) fastest: Option<usize>,
     /// Of `best_other`: the methods of which the fastest is taken.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) others: Option<Vec<String>>,

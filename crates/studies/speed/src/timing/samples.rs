@@ -1,7 +1,7 @@
 //! Raw samples: the data of an experiment, as the outcome of its cell and as a line of the run's side file.
 
 use super::Paired;
-use featherbench_bench::statistics::Estimate;
+use featherbench_bench::statistics::{Estimate, Steady, undisturbed};
 use featherbench_bench::{Finished, Outcome, Quantity};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -55,27 +55,49 @@ impl Samples {
 
 /// The blocks of an experiment, process by process.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Processes(pub Vec<Samples>);
+pub(crate) struct Processes {
+    samples: Vec<Samples>,
+    /// Of each candidate, its number of each process; NaN where it has none.
+    numbers: Vec<Vec<f64>>,
+    /// The processes that count.
+    pub steady: Steady,
+}
 
 impl Processes {
-    /// A candidate's time.
-    pub fn time(&self, which: usize) -> Estimate {
-        Estimate::time(self.0.iter().map(|samples| samples.of(which)))
+    /// Of the blocks of each of the processes.
+    pub fn new(samples: Vec<Samples>) -> Self {
+        let candidates = samples.first().map_or(0, |samples| samples.calls.len());
+        let of = |which| samples.iter().map(|samples| undisturbed(samples.of(which))).collect();
+        let numbers: Vec<Vec<f64>> = (0..candidates).map(of).collect();
+        let answered: Vec<&Vec<f64>> = numbers.iter().filter(|numbers| numbers.iter().all(|number| number.is_finite())).collect();
+        let level = |process: usize| answered.iter().map(|numbers| numbers[process].ln()).sum::<f64>() / answered.len() as f64;
+        let steady = Steady::of(&(0..samples.len()).map(level).collect::<Vec<_>>());
+        Self { samples, numbers, steady }
+    }
+
+    /// A candidate's time, in runs of a machine with this drift.
+    pub fn time(&self, which: usize, drift: f64) -> Estimate {
+        Estimate::time(&self.numbers[which], &self.steady).drifting(drift)
     }
 
     /// The ratio of a candidate's time to another's.
     pub fn ratio(&self, which: usize, over: usize) -> Estimate {
-        Estimate::ratio(self.0.iter().map(|samples| (samples.of(which), samples.of(over))))
+        Estimate::ratio(&self.numbers[which], &self.numbers[over], &self.steady)
+    }
+
+    /// The numbers of a candidate and of the first one, of the processes that count: two copies of one program say how the machine drifts.
+    pub fn beside_the_first(&self, which: usize) -> [Vec<f64>; 2] {
+        [which, 0].map(|which| self.steady.pick(&self.numbers[which]))
     }
 
     /// Whether a candidate answered to the last round of the last process.
     pub fn answered(&self, which: usize) -> bool {
-        self.0.iter().all(|samples| samples.of(which).iter().all(|ns| !ns.is_nan()))
+        self.numbers[which].iter().all(|number| !number.is_nan())
     }
 
     /// The blocks of a candidate in all processes.
     pub fn all(&self, which: usize) -> Vec<f64> {
-        self.0.iter().flat_map(|samples| samples.of(which)).copied().collect()
+        self.samples.iter().flat_map(|samples| samples.of(which)).copied().collect()
     }
 }
 

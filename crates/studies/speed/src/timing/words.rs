@@ -24,5 +24,7 @@ pub(crate) const WORDS: Words = Words {
         ("others", "the engines of which the best is taken"),
         ("p10", "lower decile of the times"),
         ("p90", "upper decile of the times"),
+        ("drift", "how far all times move from run to run"),
+        ("fastest", "processes with the core at its fastest"),
     ],
 };

@@ -37,7 +37,7 @@ const INCLUDED: [(&str, &str, &str); 10] = [
 const REASONS: usize = 12;
 
 /// Writes the section, and the drawings that it does not show at first.
-pub fn markup(run: &RunInfo, overview: &Overview, speed: &Speed, best: &[Best]) -> (Markup, Vec<Part>) {
+pub fn markup(run: &RunInfo, disturbed: Option<&str>, overview: &Overview, speed: &Speed, best: &[Best]) -> (Markup, Vec<Part>) {
     let (drawn, parts) = drawings::ratios(overview, speed);
     let body = html! {
         section #speed {
@@ -47,7 +47,7 @@ pub fn markup(run: &RunInfo, overview: &Overview, speed: &Speed, best: &[Best]) 
                 "alternating blocks on one core. Bars are 95 % intervals, by the scatter over processes. Above 1 ours is faster, below 1 the other."
             }
             (missing(run))
-            @if let Some(busy) = run.busy() { p.warning { (busy) } }
+            @if let Some(disturbed) = disturbed { p.warning { (disturbed) } }
             @if !speed.ratios.is_empty() {
                 (drawn)
                 p.note { "Grey: ± 2 %, within which this experiment calls nothing a difference. Hollow marks do not count: see below." }

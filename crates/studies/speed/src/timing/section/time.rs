@@ -6,7 +6,7 @@ use featherbench_bench::params;
 use featherbench_report::fit::{Fit, power_law};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Part, labels};
-use featherbench_results::{Row, RunInfo};
+use featherbench_results::Row;
 use maud::{Markup, html};
 
 use super::{STUDY, drawings};
@@ -86,7 +86,7 @@ pub fn lines<'a>(overview: &Overview<'a>, rows: &'a [Row]) -> Vec<TimeLine<'a>> 
 }
 
 /// Writes the section, and the drawings that it does not show at first; `first` tells the times of one robot before anything else.
-pub fn markup(run: &RunInfo, overview: &Overview, times: &[TimeLine], first: Option<Markup>) -> (Markup, Vec<Part>) {
+pub fn markup(disturbed: Option<&str>, overview: &Overview, times: &[TimeLine], first: Option<Markup>) -> (Markup, Vec<Part>) {
     let families: BTreeSet<&str> = times.iter().map(|line| line.family).collect();
     // All families at once are hard to read: the plot first shows the one with the most points.
     let points = |family: &&&str| times.iter().filter(|line| line.family == **family).map(|line| line.points.len()).sum::<usize>();
@@ -96,7 +96,7 @@ pub fn markup(run: &RunInfo, overview: &Overview, times: &[TimeLine], first: Opt
         section #time {
             h2 { "Time against size" }
             @if let Some(first) = first { (first) }
-            @if let Some(busy) = run.busy() { p.warning { (busy) } }
+            @if let Some(disturbed) = disturbed { p.warning { (disturbed) } }
             p.lead { "Time of one call on one pinned core, against the degrees of freedom. Bars are 95 % intervals, hollow marks times that do not count, crosses estimates, broad lines fits." }
             @if times.is_empty() {
                 p.empty { "This run holds no times." }
