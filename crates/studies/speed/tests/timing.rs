@@ -139,6 +139,27 @@ fn an_inverse_is_checked_backwards() {
     );
 }
 
+/// The condition number of M divides the error of a derivative of forward dynamics, and does not hide a wrong one.
+#[test]
+fn a_wrong_derivative_of_forward_dynamics_has_no_time() {
+    for quantity in [Quantity::ForwardDynamicsDq, Quantity::ForwardDynamicsDv] {
+        let wrong = |twist: featherbench_doubles::Twist| {
+            let kernels = move |_: &Robot| vec![(Quantity::ForwardDynamicsDq, "analytic"), (Quantity::ForwardDynamicsDv, "analytic")];
+            let study = Timing { kernels, settings: TimingSettings { derivatives: true, ..study().settings } };
+            let rows = rows_of(&study, Double::twisting(&robot4(), twist));
+            let errors = of(&rows, "double", quantity.name(), "worst_error");
+            (!errors.is_empty()).then(|| errors.iter().map(|row| row.verdict == Verdict::Fail).collect::<BTreeSet<_>>())
+        };
+        assert_eq!(wrong(|_| ()), Some(BTreeSet::from([false])), "{quantity:?}");
+        let entry = wrong(|answer| {
+            if answer.quantity.is_derivative() {
+                answer.values[0] += 1e-7 * answer.values.iter().map(|x| x.abs()).sum::<f64>();
+            }
+        });
+        assert_eq!(entry, Some(BTreeSet::from([true])), "{quantity:?}");
+    }
+}
+
 #[test]
 fn a_batch_in_single_precision_stands_beside_the_usual_method() {
     let kernels = |_: &Robot| {

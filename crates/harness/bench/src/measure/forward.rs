@@ -39,7 +39,8 @@ impl<'a> ForwardScale<'a> {
         at.iter().enumerate().map(|(state, at)| Self::new(robot, state, at)).collect()
     }
 
-    fn new(robot: &'a Robot, state: usize, at: &Magnitudes) -> Self {
+    /// The scales of one state.
+    pub fn new(robot: &'a Robot, state: usize, at: &Magnitudes) -> Self {
         let (model, states) = (&robot.model, &robot.states);
         let topology = &model.topology;
         let mut scale = Self {

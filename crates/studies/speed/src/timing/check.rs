@@ -1,6 +1,6 @@
 //! Whether a time counts: the answers of all candidates, against ours, at every state of the stream.
 
-use featherbench_bench::measure::{Magnitudes, ratio, scaled_error, worst};
+use featherbench_bench::measure::{ForwardScale, Magnitudes, ratio, scaled_error, worst};
 use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
 use featherbench_dynamics::{Crba, Rnea, TreeSparse};
 
@@ -22,7 +22,8 @@ pub(super) fn limit(depth: usize, quantity: &str) -> f64 {
 /// The error of an engine's answer at each state of the robot, against our usual method's.
 ///
 /// Forward dynamics, solving and the inverse of M are checked backwards: the answer goes into inverse dynamics, or is multiplied with M. The
-/// result is compared with τ, or with the identity. It is done state by state: the answers to a whole stream would not fit the memory.
+/// result is compared with τ, or with the identity. An error of a derivative of forward dynamics is over κ(D^-½ M D^-½), by which those of
+/// ∂ID and M grow in it, as in the study of derivatives. It is done state by state: the answers to a whole stream would not fit the memory.
 pub(super) fn errors(
     robot: &Robot,
     featherbench: &dyn Engine,
@@ -52,9 +53,12 @@ pub(super) fn errors(
                 Quantity::MassMatrixInverse => inverse_of_mass_matrix(robot, state, value),
                 _ => {
                     reference.run(state..state + 1)?;
+                    let at = Magnitudes::new(robot, state);
+                    let error = scaled_error(robot, quantity, &at, reference.read(), value);
                     Ok(match quantity {
                         Quantity::MassMatrixSparse => sparse_mass_matrix(robot, reference.read(), value),
-                        _ => scaled_error(robot, quantity, &Magnitudes::new(robot, state), reference.read(), value),
+                        Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv => error / ForwardScale::new(robot, state, &at).condition,
+                        _ => error,
                     })
                 }
             }
