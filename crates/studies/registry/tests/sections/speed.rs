@@ -242,6 +242,10 @@ fn the_first_page_says_who_is_fastest() {
         verdict.contains("2 of 12 rows on speed do not count, because the A/A control of their experiment is far from 1."),
         "{verdict}"
     );
+    let unsteady: Vec<Row> =
+        rows.iter().map(|row| if row.valid { row.clone() } else { Row { params: r#"{"fastest":2}"#.into(), ..row.clone() } }).collect();
+    let told = report(&RunInfo::default(), &unsteady).section("verdict").to_owned();
+    assert!(told.contains("2 of 12 rows on speed do not count, because the core was at its fastest in too few processes."), "{told}");
     let map = verdict.split("speed-map").nth(1).expect("the map").split("</table>").next().unwrap();
     // The median of 2, 0.5 and 4; the estimate is marked; a click opens the rows of all robots.
     assert!(map.contains(">2.00</button>") && map.contains("≈\u{202f}0.25</button>") && map.contains("data-chunk=\"times\""), "{map}");

@@ -249,7 +249,7 @@ fn controls(overview: &Overview, speed: &Speed) -> Markup {
             p {
                 "In every experiment a second copy of our usual method stands among the others. "
                 b { (good) " of " (count(speed.controls.len(), "such A/A control")) } " lie within ± " (format!("{:.0} %", 100.0 * VOID)) ". One that misses 1 widens the intervals beside it. "
-                @if invalid > 0 { "Where one does not, no time of its experiment counts; where more than a quarter of a robot's do not, none of its times does: " b { (count(invalid, "row")) } "." }
+                @if invalid > 0 { "Where one does not, or the core was at its fastest in too few processes, no time of its experiment counts; where more than a quarter of a robot's do not, none of its times does: " b { (count(invalid, "row")) } "." }
                 @else { "Every time counts." }
             }
             @if invalid > 0 {

@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use featherbench_bench::{BATCH, OWN};
+use featherbench_bench::{BATCH, OWN, params};
 use featherbench_report::numbers::{count, grouped, short};
 use featherbench_report::{Overview, Part, TIMES, engine, labels, opener, robot};
 use featherbench_results::{Row, Verdict};
@@ -12,7 +12,8 @@ use maud::{Markup, html};
 use super::STUDY;
 use super::ratios::Ratio;
 use super::speed::times;
-use featherbench_bench::statistics::quantile_of;
+use crate::timing::rows::RowParams;
+use featherbench_bench::statistics::{LEAST, quantile_of};
 
 /// The input regime of the verdict: another state at each call, as programs have it.
 const REGIME: &str = "stream";
@@ -30,7 +31,7 @@ pub struct SpeedVerdict<'a> {
     /// Rows of times, ratios and controls.
     rows: usize,
     /// Those that do not count, by the kind of reason.
-    void: [usize; 3],
+    void: [usize; 4],
 }
 
 /// One robot and quantity.
@@ -142,6 +143,7 @@ impl<'a> SpeedVerdict<'a> {
             "the answers are missing or wrong",
             "the A/A control of their experiment is far from 1",
             "too many A/A controls of their robot are far from 1",
+            "the core was at its fastest in too few processes",
         ];
         let parts: Vec<(usize, &str)> = self.void.into_iter().zip(whys).filter(|(number, _)| *number > 0).collect();
         let words = match &parts[..] {
@@ -262,8 +264,8 @@ fn counted<'r, 'a: 'r>(timed: &'r [&'a Row]) -> impl Iterator<Item = &'a Row> + 
     timed.iter().copied().filter(|row| ["ns_per_call", "ratio", "control"].contains(&&*row.metric) && row.value.is_some())
 }
 
-/// The rows that do not count: by their answers, by the A/A control of their experiment, by those of their robot.
-fn void(timed: &[&Row]) -> [usize; 3] {
+/// The rows that do not count: by their answers, by the A/A control of their experiment, by those of their robot, by the core's state.
+fn void(timed: &[&Row]) -> [usize; 4] {
     let wrong: BTreeSet<[&str; 4]> = timed
         .iter()
         .filter(|row| row.metric == "worst_error" && row.verdict != Verdict::Pass)
@@ -271,10 +273,13 @@ fn void(timed: &[&Row]) -> [usize; 3] {
         .collect();
     let experiment = |row: &&'_ Row| -> [String; 3] { [row.robot.clone(), row.quantity.clone(), row.cache.clone()] };
     let loud: BTreeSet<[String; 3]> = timed.iter().filter(|row| row.metric == "control" && !row.valid).map(experiment).collect();
-    let mut kinds = [0; 3];
+    let unsteady = |row: &Row| params::of_row::<RowParams>(row).and_then(|params| params.fastest).is_some_and(|fastest| fastest < LEAST);
+    let mut kinds = [0; 4];
     for row in counted(timed).filter(|row| !row.valid) {
         let kind = if wrong.contains(&[&*row.robot, &*row.quantity, &*row.engine, &*row.method]) {
             0
+        } else if unsteady(row) {
+            3
         } else if loud.contains(&experiment(&row)) {
             1
         } else {
