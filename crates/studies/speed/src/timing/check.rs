@@ -54,11 +54,13 @@ pub(super) fn errors(
                 _ => {
                     reference.run(state..state + 1)?;
                     let at = Magnitudes::new(robot, state);
-                    let error = scaled_error(robot, quantity, &at, reference.read(), value);
+                    let error = || scaled_error(robot, quantity, &at, reference.read(), value);
                     Ok(match quantity {
                         Quantity::MassMatrixSparse => sparse_mass_matrix(robot, reference.read(), value),
-                        Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv => error / ForwardScale::new(robot, state, &at).condition,
-                        _ => error,
+                        Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv => {
+                            error() / ForwardScale::new(robot, state, &at).condition
+                        }
+                        _ => error(),
                     })
                 }
             }
