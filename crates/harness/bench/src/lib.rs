@@ -31,12 +31,13 @@
 //! # The walk of a timing sample
 //! ```text
 //! one block of calls           Evaluation::clock              engines    clock readings around the loop, in the process that runs it
-//!   → ns per call              Samples                        studies    candidate × round; also in timing.jsonl
+//!   → ns per call              Samples                        studies    candidate × round, how crowded the core was; also in timing.jsonl
 //!   → lower decile and ratio   Estimate                       studies    of each process; their spread makes the interval
 //!   → one Row                  value, ci_low, ci_high, valid  results    valid = false where the A/A replicate is far from 1
 //!   → a mark with its interval Section                        studies    the section of the timing study; report draws the frame
 //! ```
 
+mod core;
 mod engine;
 mod error;
 mod gates;
@@ -50,6 +51,7 @@ mod suggestion;
 mod suite;
 pub mod truth;
 
+pub use crate::core::Core;
 pub use engine::answer::{Evaluation, NoAnswer};
 pub use engine::contact_solver::{ContactProblems, ContactSolver, ContactSteps, StepMethod};
 pub use engine::described::{ClockKind, DescribedEngine, Engines, Library, Package, Start};

@@ -8,10 +8,10 @@
 //! Where a process has its code and data is an accident that lasts as long as it does. So an experiment is made in several processes, one
 //! after another, over the length of the study. Each gives one number.
 //!
-//! A core has *states*: alone it is a third faster than beside a program on its other thread, and a state lasts for seconds. Two candidates
-//! do not suffer alike, so a ratio has states as well. A mean over states is that of chance. So only those processes count in which the core
-//! was at its fastest: [`Steady`]. In one of ten something else went on all the while. So the least and the largest of eight or more are left
-//! out.
+//! A core has *states*: alone it is a third faster than beside a program on its other thread. A state lasts for milliseconds or seconds. Two
+//! candidates do not suffer alike, so a ratio has states as well, and a mean over states is that of chance. So it is measured between rounds
+//! how crowded the core is, and only those count in which it was alone: [`Steady`]. In one process of ten something else went on all the
+//! while. So the least and the largest of eight or more are left out.
 //!
 //! An estimate is the geometric mean of the others. Its interval is that of a trimmed mean (Yuen, Biometrika 61, 1974), or of a mean:
 //! whatever differs between processes or moments is in it. What the whole machine does from one run to the next is in no ratio, but in every
@@ -37,9 +37,13 @@ pub const NOISE: f64 = 0.02;
 /// The interval of an A/A ratio must be within 1 ± this: beyond it no time of the experiment counts. A wider interval within it needs no
 /// rule: whatever made it wide made the others wide.
 pub const VOID: f64 = 0.05;
-/// Between the slowest process of one state and the fastest of the next is more than this, as a logarithm. Layouts of the memory alone make
-/// smaller steps among ten processes: their spread is about 1 %. Seen between states: 20 to 40 %.
-const STEP: f64 = 0.04;
+/// A core is crowded if its contention is so much more than at the quietest moments. Up to this the blocks of kernels are as short as alone, and
+/// from 1.1 on a third longer (EPYC, by `timing.jsonl`).
+pub const CROWDED: f64 = 1.08;
+/// The share of the rounds that counts as the quietest: a single one may be an accident.
+const QUIETEST: f64 = 0.02;
+/// A process counts if the core was alone in this share of its rounds, or more.
+const ALONE: f64 = 0.25;
 
 /// A value with its interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,24 +140,41 @@ impl Estimate {
     }
 }
 
-/// The processes of an experiment that count: those in which the core was at its fastest.
+/// How crowded the core was in the quietest of these rounds. NaN without rounds.
+pub fn quietest(contention: &[f64]) -> f64 {
+    quantile_of(contention, QUIETEST)
+}
+
+/// The rounds and the processes of an experiment that count: those in which the core was at its fastest, alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Steady {
+    /// Of each process the rounds that count.
+    rounds: Vec<Vec<bool>>,
     kept: Vec<bool>,
-    /// How many were at the fastest.
+    /// How many processes were at the fastest.
     pub fastest: usize,
 }
 
 impl Steady {
-    /// Of the levels of the processes: the mean logarithm of the times of all candidates. From the fastest on they count up to the first
-    /// step of more than 4 %. If those are fewer than [`LEAST`], all count, and there is a complaint.
-    pub fn of(levels: &[f64]) -> Self {
-        let mut sorted = levels.to_vec();
-        sorted.sort_unstable_by(f64::total_cmp);
-        let near = |pair: &[f64]| pair[1] - pair[0] <= STEP;
-        let fastest = sorted.windows(2).position(|pair| !near(pair)).map_or(sorted.len(), |last| last + 1);
-        let kept = levels.iter().map(|&level| fastest < LEAST || level <= sorted[fastest - 1]).collect();
-        Self { kept, fastest }
+    /// Of how crowded the core was in each round of each process, and in the quietest rounds of the run. The rounds that are about as quiet
+    /// count, and the processes that have enough of them. If those are fewer than [`LEAST`], all count, and there is a complaint.
+    pub fn of<'c>(contention: impl IntoIterator<Item = &'c [f64]>, quietest: f64) -> Self {
+        let alone = |process: &[f64]| process.iter().map(|&round| round <= CROWDED * quietest).collect::<Vec<bool>>();
+        let rounds: Vec<Vec<bool>> = contention.into_iter().map(alone).collect();
+        let enough = |rounds: &Vec<bool>| {
+            let alone = rounds.iter().filter(|alone| **alone).count();
+            alone > 0 && alone as f64 >= ALONE * rounds.len() as f64
+        };
+        let kept: Vec<bool> = rounds.iter().map(enough).collect();
+        let fastest = kept.iter().filter(|kept| **kept).count();
+        let kept = if fastest < LEAST { vec![true; kept.len()] } else { kept };
+        Self { rounds, kept, fastest }
+    }
+
+    /// The blocks of the rounds of a process that count; all of them if too few processes count.
+    pub fn blocks(&self, process: usize, blocks: &[f64]) -> Vec<f64> {
+        let all = self.fastest < LEAST;
+        blocks.iter().zip(&self.rounds[process]).filter(|(_, alone)| all || **alone).map(|(&block, _)| block).collect()
     }
 
     /// The numbers of the processes that count.
@@ -161,9 +182,9 @@ impl Steady {
         numbers.iter().zip(&self.kept).filter(|(_, kept)| **kept).map(|(&number, _)| number).collect()
     }
 
-    /// Why no time of the experiment counts: the state of the core that should count is that of too few processes.
+    /// Why no time of the experiment counts: the core was at its fastest in too few processes.
     pub fn complaint(&self) -> Option<String> {
-        let Self { kept, fastest } = self;
+        let Self { kept, fastest, .. } = self;
         (*fastest < LEAST).then(|| format!("the core was at its fastest in {fastest} of {} processes, and {LEAST} are needed", kept.len()))
     }
 }

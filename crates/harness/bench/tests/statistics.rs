@@ -1,7 +1,9 @@
 //! Conclusions from the blocks of a paired experiment, on machines with known noise.
 
 use featherbench_bench::measure::worst;
-use featherbench_bench::statistics::{EPOCHS, Estimate, LEAST, NOISE, PROCESSES, Pace, Steady, VOID, drift, median, quantile, undisturbed};
+use featherbench_bench::statistics::{
+    EPOCHS, Estimate, LEAST, NOISE, PROCESSES, Pace, Steady, VOID, drift, median, quantile, quietest, undisturbed,
+};
 use featherbench_robots::Random;
 use featherbench_spatial::Real;
 
@@ -10,8 +12,8 @@ const ROUNDS: usize = 5 * EPOCHS;
 /// Experiments of each kind; the test counts those that are right.
 const TRIALS: usize = 400;
 
-/// The noise of a machine: factors on the two blocks of a round of a process.
-type Noise = fn(&mut Random, [usize; 2]) -> [f64; 2];
+/// The noise of a machine: factors on the two blocks of a round of a process, and how crowded the core was.
+type Noise = fn(&mut Random, [usize; 2]) -> [f64; 3];
 
 /// A standard normal number (Box and Muller).
 fn normal(random: &mut Random) -> f64 {
@@ -19,75 +21,105 @@ fn normal(random: &mut Random) -> f64 {
     radius * Real::sin_cos(angle).1
 }
 
-fn jitter(random: &mut Random, _: [usize; 2]) -> [f64; 2] {
-    [(); 2].map(|()| 1.0 + 0.02 * normal(random).abs())
+fn jitter(random: &mut Random, at: [usize; 2]) -> [f64; 3] {
+    let [first, second] = [(); 2].map(|()| 1.0 + 0.02 * normal(random).abs());
+    [first, second, 1.0 + 0.001 * (at[1] % 6) as f64]
+}
+
+/// Both blocks take longer by this factor.
+fn slower([first, second, contention]: [f64; 3], factor: f64) -> [f64; 3] {
+    [first * factor, second * factor, contention]
 }
 
 /// One block in eight is interrupted, and takes up to three times as long.
-fn interruptions(random: &mut Random, at: [usize; 2]) -> [f64; 2] {
-    jitter(random, at).map(|time| if random.below(8) == 0 { time * random.uniform(1.1, 3.0) } else { time })
+fn interruptions(random: &mut Random, at: [usize; 2]) -> [f64; 3] {
+    let [first, second, contention] = jitter(random, at);
+    let [first, second] = [first, second].map(|time| if random.below(8) == 0 { time * random.uniform(1.1, 3.0) } else { time });
+    [first, second, contention]
 }
 
 /// The machine becomes 40 % slower during the run.
-fn slowing(random: &mut Random, at: [usize; 2]) -> [f64; 2] {
+fn slowing(random: &mut Random, at: [usize; 2]) -> [f64; 3] {
     let part = (at[0] * ROUNDS + at[1]) as f64 / (PROCESSES * ROUNDS) as f64;
-    jitter(random, at).map(|time| time * (1.0 + 0.4 * part))
+    slower(jitter(random, at), 1.0 + 0.4 * part)
 }
 
 /// Another program starts and stops: every seven rounds the frequency changes, or does not.
-fn frequencies(random: &mut Random, at: [usize; 2]) -> [f64; 2] {
+fn frequencies(random: &mut Random, at: [usize; 2]) -> [f64; 3] {
     let slow = Random::new(5, (at[0] * ROUNDS + at[1]) as u64 / 7).below(2) == 1;
-    jitter(random, at).map(|time| if slow { 1.3 * time } else { time })
+    slower(jitter(random, at), if slow { 1.3 } else { 1.0 })
 }
 
 /// Each process has its own factor for each of the two: a spread of 0.5 %, many times what blocks within a process would show.
-fn places(random: &mut Random, at: [usize; 2]) -> [f64; 2] {
+fn places(random: &mut Random, at: [usize; 2]) -> [f64; 3] {
     // The experiment's number is in the state of the generator, which is another one in each.
     thread_local!(static FACTORS: std::cell::Cell<[f64; 2]> = const { std::cell::Cell::new([1.0; 2]) });
     if at[1] == 0 {
         FACTORS.set([(); 2].map(|()| 1.0 + 0.005 * normal(random)));
     }
     let factors = FACTORS.get();
-    let blocks = jitter(random, at);
-    [blocks[0] * factors[0], blocks[1] * factors[1]]
+    let [first, second, contention] = jitter(random, at);
+    [first * factors[0], second * factors[1], contention]
 }
 
-/// During half of the processes another program is on the core's other thread, and the two do not suffer alike: 30 and 38 %.
-fn neighbour(random: &mut Random, at: [usize; 2]) -> [f64; 2] {
+/// Beside a program on the core's other thread the two do not suffer alike: 30 and 38 %.
+fn beside([first, second, contention]: [f64; 3]) -> [f64; 3] {
+    [1.3 * first, 1.38 * second, 1.25 * contention]
+}
+
+/// Another program is on the core's other thread during half of the processes.
+fn neighbour(random: &mut Random, at: [usize; 2]) -> [f64; 3] {
     thread_local!(static SLOW: std::cell::Cell<bool> = const { std::cell::Cell::new(false) });
     if at[1] == 0 {
         SLOW.set(random.below(2) == 1);
     }
     let blocks = places(random, at);
-    if SLOW.get() { [1.3 * blocks[0], 1.38 * blocks[1]] } else { blocks }
+    if SLOW.get() { beside(blocks) } else { blocks }
 }
 
-const MACHINES: [(&str, Noise); 6] = [
+/// Another program comes and goes within a process: it stays for ten rounds on the average, and is away for as long.
+fn visits(random: &mut Random, at: [usize; 2]) -> [f64; 3] {
+    thread_local!(static SLOW: std::cell::Cell<bool> = const { std::cell::Cell::new(false) });
+    if random.below(10) == 0 {
+        SLOW.set(!SLOW.get());
+    }
+    let blocks = places(random, at);
+    if SLOW.get() { beside(blocks) } else { blocks }
+}
+
+const MACHINES: [(&str, Noise); 7] = [
     ("jitter", jitter),
     ("interruptions", interruptions),
     ("slowing", slowing),
     ("frequencies", frequencies),
     ("places", places),
     ("neighbour", neighbour),
+    ("visits", visits),
 ];
 
+/// The rounds of a process: blocks of the reference, of the engine, and how crowded the core was.
+type Blocks = [Vec<f64>; 3];
+
 /// The numbers of an experiment of two, process by process, and which of them count.
-fn numbers(blocks: &[(Vec<f64>, Vec<f64>)]) -> ([Vec<f64>; 2], Steady) {
-    let (reference, engine): (Vec<f64>, Vec<f64>) =
-        blocks.iter().map(|(reference, engine)| (undisturbed(reference), undisturbed(engine))).unzip();
-    let levels: Vec<f64> = reference.iter().zip(&engine).map(|(reference, engine)| 0.5 * (reference * engine).ln()).collect();
-    ([reference, engine], Steady::of(&levels))
+fn numbers(processes: &[Blocks]) -> ([Vec<f64>; 2], Steady) {
+    let contention = || processes.iter().map(|[.., contention]| &contention[..]);
+    let steady = Steady::of(contention(), quietest(&contention().flatten().copied().collect::<Vec<_>>()));
+    let of = |which: usize| (0..).zip(processes).map(|(process, blocks)| undisturbed(&steady.blocks(process, &blocks[which]))).collect();
+    ([0, 1].map(of), steady)
 }
 
 /// Reference and engine on a noisy machine, process by process; the engine is slower by this factor.
-fn blocks(noise: Noise, slower: f64, seed: u64) -> Vec<(Vec<f64>, Vec<f64>)> {
+fn blocks(noise: Noise, slower: f64, seed: u64) -> Vec<Blocks> {
     let mut random = Random::new(seed, 7);
     let mut of_process = |process| {
-        let mut round = |round| {
-            let [reference, engine] = noise(&mut random, [process, round]);
-            (1000.0 * reference, 1000.0 * slower * engine)
-        };
-        (0..ROUNDS).map(&mut round).unzip()
+        let mut blocks = Blocks::default();
+        for round in 0..ROUNDS {
+            let [reference, engine, contention] = noise(&mut random, [process, round]);
+            for (blocks, number) in blocks.iter_mut().zip([1000.0 * reference, 1000.0 * slower * engine, contention]) {
+                blocks.push(number);
+            }
+        }
+        blocks
     };
     (0..PROCESSES).map(&mut of_process).collect()
 }
@@ -134,7 +166,7 @@ fn the_interval_holds_the_true_ratio_as_often_as_it_says() {
 fn an_interval_within_one_process_would_be_too_narrow() {
     let held = count(|seed| {
         let blocks = blocks(places, 1.03, seed);
-        let of_one = |part: usize| undisturbed(&blocks[0].1[part * 3..][..3]) / undisturbed(&blocks[0].0[part * 3..][..3]);
+        let of_one = |part: usize| undisturbed(&blocks[0][1][part * 3..][..3]) / undisturbed(&blocks[0][0][part * 3..][..3]);
         let Estimate { low, high, .. } = Estimate::of(&(0..PROCESSES).map(of_one).collect::<Vec<_>>());
         low <= 1.03 && 1.03 <= high
     });
@@ -162,7 +194,7 @@ fn chance_alone_does_not_void_a_run_and_a_noisy_machine_does() {
 fn the_ratio_of_medians_is_misled_where_that_of_deciles_is_not() {
     let farthest = |of: fn(&[f64]) -> f64| {
         let of_trial = |seed| {
-            blocks(frequencies, 1.0, seed).iter().map(|(reference, engine)| (of(engine) / of(reference) - 1.0).abs()).fold(0.0, worst)
+            blocks(frequencies, 1.0, seed).iter().map(|[reference, engine, _]| (of(engine) / of(reference) - 1.0).abs()).fold(0.0, worst)
         };
         (0..TRIALS as u64).map(of_trial).fold(0.0, worst)
     };
@@ -233,24 +265,35 @@ fn the_interval_of_fewer_processes_holds_as_much() {
     }
 }
 
-/// The slower state has no part in the ratio, and a run without enough of the faster says so.
+/// The crowded state has no part in the ratio, and a run without enough of the other says so.
 #[test]
-fn processes_of_the_slower_state_do_not_count() {
-    let level = |slow: &[usize]| -> Vec<f64> {
-        (0..PROCESSES).map(|process| 0.003 * process as f64 + if slow.contains(&process) { 0.2 } else { 0.0 }).collect()
+fn crowded_processes_and_rounds_do_not_count() {
+    let crowded = |slow: &[usize]| -> Vec<Vec<f64>> {
+        (0..PROCESSES).map(|process| vec![1.0 + 0.003 * process as f64 + if slow.contains(&process) { 0.2 } else { 0.0 }; 8]).collect()
     };
+    let of = |contention: &[Vec<f64>]| Steady::of(contention.iter().map(Vec::as_slice), quietest(&contention.concat()));
     let all: Vec<f64> = (0..PROCESSES).map(|process| process as f64).collect();
-    assert_eq!(Steady::of(&level(&[])).pick(&all), all);
-    let some = Steady::of(&level(&[1, 2, 3, 5, 8]));
+    assert_eq!(of(&crowded(&[])).pick(&all), all);
+    let some = of(&crowded(&[1, 2, 3, 5, 8]));
     assert_eq!((some.pick(&all), some.fastest, some.complaint()), (vec![0.0, 4.0, 6.0, 7.0, 9.0], 5, None));
-    let few = Steady::of(&level(&[0, 1, 2, 3, 5, 6, 8, 9]));
+    let few = of(&crowded(&[0, 1, 2, 3, 5, 6, 8, 9]));
     assert_eq!((few.pick(&all), few.fastest), (all.clone(), 2));
     assert!(few.complaint().is_some_and(|reason| reason.contains("2 of 10")));
-    assert!(Steady::of(&[f64::NAN; PROCESSES]).complaint().is_some());
-    // A mean over both states would be that of chance: 3 % and more from the truth in most runs.
+    assert_eq!(few.blocks(0, &[1.0, 2.0]), [1.0, 2.0], "of too few all have a value");
+    assert!(Steady::of([&[f64::NAN; 8][..]; PROCESSES], f64::NAN).complaint().is_some());
+    assert!(Steady::of([&[][..]; PROCESSES], 1.0).complaint().is_some());
+    // Two of eight rounds are enough for a process, one is not.
+    let mut rounds = crowded(&[]);
+    rounds[3][2..].fill(1.3);
+    rounds[4][1..].fill(1.3);
+    let steady = of(&rounds);
+    assert_eq!((steady.fastest, steady.pick(&all).contains(&4.0)), (9, false));
+    let eight = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+    assert_eq!((steady.blocks(3, &eight), steady.blocks(5, &eight)), (vec![1.0, 2.0], eight.to_vec()));
+    // A mean over both states would be that of chance: 2 % and more from the truth in most runs.
     let misled = count(|seed| {
         let blocks = blocks(neighbour, 1.0, seed);
-        let ratios: Vec<f64> = blocks.iter().map(|(reference, engine)| undisturbed(engine) / undisturbed(reference)).collect();
+        let ratios: Vec<f64> = blocks.iter().map(|[reference, engine, _]| undisturbed(engine) / undisturbed(reference)).collect();
         Estimate::of(&ratios).value > 1.02
     });
     assert!(misled > TRIALS / 2, "{misled} of {TRIALS}");
@@ -269,7 +312,7 @@ fn a_drift_is_known_from_two_copies() {
         };
         let copies: Vec<[Vec<f64>; 2]> = (0..12).map(|_| experiment(&mut random)).collect();
         let found = drift(copies.iter().cloned());
-        let time = Estimate::time(&copies[0][0], &Steady::of(&[0.0; PROCESSES]));
+        let time = Estimate::time(&copies[0][0], &Steady::of([&[1.0][..]; PROCESSES], 1.0));
         (found, [time, time.drifting(found)].map(|Estimate { low, high, .. }| low <= 1.0 && 1.0 <= high))
     };
     let runs: Vec<_> = (0..TRIALS as u64).map(of_run).collect();
@@ -316,7 +359,7 @@ fn a_process_counts_by_its_lower_decile() {
     let (engine, reference) = ([6.0, 4.0, 2.0, 6.0], [1.0, 2.0, 2.0, 12.0]);
     assert_eq!([undisturbed(&engine), undisturbed(&reference)], [2.6, 1.3]);
     let of = |blocks: &[f64]| vec![undisturbed(blocks); PROCESSES];
-    let all = Steady::of(&[0.0; PROCESSES]);
+    let all = Steady::of([&[1.0][..]; PROCESSES], 1.0);
     let ratio = Estimate::ratio(&of(&engine), &of(&reference), &all);
     assert_eq!(ratio, Estimate { value: 2.0, low: 2.0, high: 2.0 });
     assert_eq!(Estimate::time(&of(&engine), &all).value, 2.6);

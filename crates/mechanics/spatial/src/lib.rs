@@ -9,6 +9,7 @@
 //!
 //! Source: R. Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapter 2 and appendix A ("the book" in this workspace).
 
+mod contention;
 mod exponential;
 mod inertia;
 mod linear;
@@ -20,6 +21,7 @@ mod scalar;
 mod transform;
 mod vector;
 
+pub use contention::contention;
 pub use exponential::TangentBlock;
 pub use inertia::{ArticulatedInertia, CentralInertia, RigidBodyInertia};
 pub use linear::{Ldl3, Mat3, Sym3, Vec3};

@@ -304,22 +304,39 @@ fn altered(alter: impl Fn(&mut Cell, &mut Vec<f64>)) -> Vec<Row> {
         }
     }
     let text = study().side_file(&finished).unwrap().1;
-    let candidates = finished.iter().filter_map(|(cell, _)| cell.params["candidates"].as_array()).map(Vec::len).sum::<usize>();
-    assert_eq!(text.lines().count(), candidates, "a line for each candidate of each experiment");
+    let lines = finished.iter().filter_map(|(cell, _)| cell.params["candidates"].as_array()).map(|all| all.len() + 1).sum::<usize>();
+    assert_eq!(text.lines().count(), lines, "a line for each candidate of each experiment, and one of how crowded the core was");
     for line in text.lines() {
         let line: serde_json::Value = serde_json::from_str(line).unwrap();
         assert!(finished.iter().any(|(cell, _)| cell.id() == line["cell"]), "{line}");
-        assert!(line["ns"].as_array().unwrap().len() >= EPOCHS);
+        let rounds = [&line["ns"], &line["contention"]].into_iter().find_map(|rounds| rounds.as_array()).unwrap();
+        assert!(rounds.len() >= EPOCHS);
     }
     compare(&study(), &context, finished)
 }
 
-/// The samples of an experiment are after the number of candidates and their calls, candidate by candidate.
-fn fill(values: &mut [f64], ns: impl Fn(usize, usize) -> f64) {
+/// The rounds of an experiment. Its samples are after the number of candidates and their calls, candidate by candidate, and then come the
+/// rounds' contentions.
+fn rounds(values: &[f64]) -> usize {
     let candidates = values[0] as usize;
-    let rounds = (values.len() - 1 - candidates) / candidates;
+    (values.len() - 1 - candidates) / (candidates + 1)
+}
+
+/// Fills in the samples, on a core that was alone in all rounds.
+fn fill(values: &mut [f64], ns: impl Fn(usize, usize) -> f64) {
+    let (candidates, rounds) = (values[0] as usize, rounds(values));
     for (place, value) in values[1 + candidates..].iter_mut().enumerate() {
-        *value = ns(place / rounds, place % rounds);
+        *value = if place / rounds < candidates { ns(place / rounds, place % rounds) } else { 1.0 };
+    }
+}
+
+/// A program on the core's other thread in these rounds, which slows all candidates by as much.
+fn crowd(values: &mut [f64], crowded: impl Fn(usize) -> bool) {
+    let (candidates, rounds) = (values[0] as usize, rounds(values));
+    for (place, value) in values[1 + candidates..].iter_mut().enumerate() {
+        if crowded(place % rounds) {
+            *value *= 1.25;
+        }
     }
 }
 
@@ -389,6 +406,43 @@ fn one_bad_control_of_four_costs_its_experiment_alone() {
     assert!(times(&others).iter().all(|row| row.reason.is_empty()));
 }
 
+/// The experiments of a robot know of each other: where one is crowded all the while, the others tell.
+#[test]
+fn rounds_with_a_neighbour_do_not_count() {
+    let usual = |round: usize| 100.0 + (round % 3) as f64;
+    let value = |rows: &[Row]| -> Vec<Option<f64>> { rows.iter().filter(|row| row.metric == "ns_per_call").map(|row| row.value).collect() };
+    // In half of the rounds: the times are those of the others.
+    let [spoilt, others] = quiet_but(|cell, values| {
+        if hot_id(cell) {
+            crowd(values, |round| round % 2 == 1);
+        }
+        hot_id(cell)
+    });
+    assert!(times(&spoilt).iter().chain(&times(&others)).all(|row| row.reason.is_empty() && row.valid));
+    assert!(value(&spoilt).iter().chain(&value(&others)).all(|value| value.is_some_and(|value| (value - 100.0).abs() < 0.5)));
+    // In seven of ten processes; in eight; in all.
+    for (from, counts) in [(3, true), (2, false), (0, false)] {
+        let [spoilt, others] = quiet_but(|cell, values| {
+            if hot_id(cell) && cell.params["process"].as_u64().unwrap() >= from {
+                crowd(values, |_| true);
+            }
+            hot_id(cell)
+        });
+        let all = times(&spoilt);
+        assert!(all.iter().all(|row| row.valid == counts && row.params.contains(&format!("\"fastest\":{from}"))), "{from}: {all:?}");
+        let reason = format!("the core was at its fastest in {from} of 10 processes, and 3 are needed");
+        assert!(all.iter().all(|row| counts || row.reason == reason), "{}", all[0].reason);
+        assert!(value(&spoilt).iter().all(|value| value.is_some_and(|value| (value < 101.0) == counts)), "{from}");
+        assert!(times(&others).iter().all(|row| row.valid));
+    }
+    // A robot that met no other state: nothing in it can tell.
+    let all = rewritten(|values| {
+        fill(values, |_, round| usual(round));
+        crowd(values, |_| true);
+    });
+    assert!(value(&all).iter().all(|value| value.is_some_and(|value| value > 120.0)));
+}
+
 #[test]
 fn two_bad_controls_of_four_cost_the_robot() {
     let [spoilt, others] = quiet_but(|cell, values| {
@@ -413,9 +467,8 @@ fn without_a_control_no_time_counts() {
     let lost_copy = |cell: &mut Cell, values: &mut Vec<f64>| {
         if hot_id(cell) {
             // The last block of the second candidate.
-            let candidates = values[0] as usize;
-            let rounds = (values.len() - 1 - candidates) / candidates;
-            values[candidates + 2 * rounds] = f64::NAN;
+            let last = values[0] as usize + 2 * rounds(values);
+            values[last] = f64::NAN;
         }
         hot_id(cell)
     };
@@ -438,9 +491,8 @@ fn without_a_control_no_time_counts() {
         assert!(times(&others).iter().all(|row| row.reason.is_empty()), "one of four: the others count");
     }
     let rows = rewritten(|values| {
-        let candidates = values[0] as usize;
-        let rounds = (values.len() - 1 - candidates) / candidates;
-        fill(values, |candidate, round| if (candidate, round) == (1, rounds / 2) { f64::NAN } else { 100.0 });
+        let half = rounds(values) / 2;
+        fill(values, |candidate, round| if (candidate, round) == (1, half) { f64::NAN } else { 100.0 });
     });
     let times: Vec<_> = rows.iter().filter(|row| row.metric == "ns_per_call").collect();
     assert!(!times.is_empty() && times.iter().all(|row| !row.valid && row.reason.starts_with("4 of 4 A/A controls")));
@@ -474,7 +526,10 @@ fn a_peak_below_what_single_doubles_make_does_not_count() {
 
 #[test]
 fn one_that_stops_answering_is_an_error() {
-    let rows = rewritten(|values| *values.last_mut().unwrap() = f64::NAN);
+    let rows = rewritten(|values| {
+        let last = values.len() - 1 - rounds(values);
+        values[last] = f64::NAN;
+    });
     let errors: Vec<_> = rows.iter().filter(|row| row.verdict == Verdict::Error).collect();
     // The last candidate of forward dynamics is ltdl, the last of inverse dynamics the A/A replicate: without it no time there counts.
     assert_eq!(errors.len(), 4);

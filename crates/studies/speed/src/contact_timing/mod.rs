@@ -20,6 +20,7 @@ mod candidates;
 mod rows;
 pub(crate) mod section;
 
+use crate::timing::CORE;
 use crate::timing::machine::Pinned;
 use crate::timing::protocol::{Budget, Ready, experiment};
 use crate::timing::samples::Samples;
@@ -109,7 +110,7 @@ impl ContactTiming {
         let start = Instant::now();
         let clock = || start.elapsed();
         let budget = Budget::of(self.settings.seconds / PROCESSES as f64);
-        let samples = experiment(&prepare, candidates.len(), landed.problems.len(), budget, &clock, &mut random);
+        let samples = experiment(&prepare, candidates.len(), landed.problems.len(), budget, &clock, &CORE, &mut random);
         let told = chosen.into_iter().map(|chosen| chosen.unwrap_or(Told::NONE)).collect();
         Ok(Measured { problems: landed.problems.len() as f64, told, samples })
     }

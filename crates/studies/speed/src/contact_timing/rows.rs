@@ -3,7 +3,7 @@
 use super::candidates::{Candidate, Told, WHOLE};
 use super::{Measured, OfRobot, Params, TARGET};
 use crate::timing::rows::{estimated, judged};
-use crate::timing::samples::Processes;
+use crate::timing::samples::{Processes, quietest_of};
 use featherbench_bench::statistics::{Estimate, drift};
 use featherbench_bench::{Finished, Gates, NoAnswer, params};
 use featherbench_results::{Kind, Relation, Row, Verdict};
@@ -19,7 +19,8 @@ pub(super) fn rows(gates: &Gates, processes: &[Finished]) -> Vec<Row> {
             measured.ok_or_else(|| NoAnswer::Failed("the outcome holds no samples".into()))
         };
         let mut measured = processes.iter().map(of).collect::<Result<Vec<_>, _>>()?;
-        let samples = Processes::new(measured.iter().map(|measured| measured.samples.clone()).collect());
+        let quietest = quietest_of(measured.iter().map(|measured| &measured.samples));
+        let samples = Processes::new(measured.iter().map(|measured| measured.samples.clone()).collect(), quietest);
         Ok((of_robot, candidates, measured.swap_remove(0), samples))
     };
     let params = cell.params::<OfRobot>().map(|params| params::text(&params)).unwrap_or_default();

@@ -23,6 +23,7 @@ fn outcome(ns: [f64; 4], told: [[f64; 3]; 4]) -> Outcome {
     for (which, ns) in ns.into_iter().enumerate() {
         for round in 0..60 {
             samples.set(which, round, ns);
+            samples.crowded(round, 1.0);
         }
     }
     Outcome::Values(std::iter::once(3.0).chain(told.into_iter().flatten()).chain(samples.to_values()).collect())

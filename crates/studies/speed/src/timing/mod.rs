@@ -25,9 +25,10 @@ pub(crate) mod section;
 pub(crate) mod words;
 
 use featherbench_bench::statistics::PROCESSES;
-use featherbench_bench::{Asked, Cell, Context, Engine, Finished, HarnessError, NoAnswer, OWN, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Asked, Cell, Context, Core, Engine, Finished, HarnessError, NoAnswer, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_results::Row;
 use featherbench_robots::{Random, StateBatch};
+use featherbench_spatial::contention;
 use featherbench_study::{Entry, Made, Setup};
 use machine::{Machine, Pinned};
 use protocol::{Budget, Ready};
@@ -108,6 +109,9 @@ const REGIMES: [&str; 2] = ["stream", "hot"];
 const MOST_NUMBERS: usize = 12_000_000;
 /// The largest number of entries of mass matrices, if a quantity is one or needs one: the registry keeps as many.
 const MOST_ENTRIES: usize = 4 << 20;
+
+/// The core that takes the times of this process.
+pub(crate) static CORE: Core = Core::new(contention);
 
 /// The kinds of cells, with their parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -262,7 +266,7 @@ impl Timing {
                 let start = Instant::now();
                 let clock = || start.elapsed();
                 let budget = Budget::of(self.settings.seconds / PROCESSES as f64);
-                Ok(protocol::experiment(&prepare, candidates.len(), count, budget, &clock, &mut random).to_values())
+                Ok(protocol::experiment(&prepare, candidates.len(), count, budget, &clock, &CORE, &mut random).to_values())
             }
         }
     }

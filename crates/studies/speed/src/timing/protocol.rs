@@ -5,15 +5,17 @@
 //! each of its places in a cache line has two epochs.
 //! In each round every candidate has one block, in random order, from a random state on. The batch begins again at its end. Before a block
 //! its candidate makes a tenth as many calls that are not timed, at the states before. Other candidates ran since its last block, and their
-//! data are in the caches.
+//! data are in the caches. Before and after each round it is measured how crowded the core is. A round waits for the core to be alone, all
+//! rounds together at most twice as long as they take.
 //!
 //! A decision from a time uses the smallest of several: a stall of the machine makes a time longer, never shorter. Times are values, from
 //! the candidates' clocks and from a clock that is an argument.
 
 use super::samples::Samples;
 use featherbench_bench::statistics::EPOCHS;
-use featherbench_bench::{Evaluation, NoAnswer, Relocation, STACK_PLACES, on_stack_at};
+use featherbench_bench::{Core, Evaluation, NoAnswer, Relocation, STACK_PLACES, on_stack_at};
 use featherbench_robots::Random;
+use featherbench_spatial::larger;
 use std::time::Duration;
 
 /// The shortest block. It is some thousand times the clock's resolution and the cost of reading it. It is so short that most blocks are not
@@ -25,6 +27,9 @@ const MOST_ROUNDS: usize = 5;
 const WARM: usize = 10;
 /// Most calls of a block. A call that would need more is shorter than any clock can measure.
 const MOST_CALLS: usize = 1 << 24;
+/// Rounds wait for the core to be alone, together at most so many times as long as they take. A neighbour stays for some ten milliseconds, which
+/// are ten rounds.
+const PATIENCE: u32 = 2;
 /// A block is long enough if it was so in each of these trials. One alone may include a stall, and then all blocks would be too short.
 const TRIALS: usize = 3;
 
@@ -65,14 +70,15 @@ impl Budget {
     }
 }
 
-/// Times `count` candidates over a batch of `states` states. `prepare` makes one of them ready; `clock` gives the time since some moment.
-/// After an error a candidate's times are NaN.
+/// Times `count` candidates over a batch of `states` states. `prepare` makes one of them ready; `clock` gives the time since some moment,
+/// `core` how crowded the core is. After an error a candidate's times are NaN.
 pub(crate) fn experiment<'a>(
     prepare: &dyn Fn(usize) -> Ready<'a>,
     count: usize,
     states: usize,
     budget: Budget,
     clock: &dyn Fn() -> Duration,
+    core: &Core,
     random: &mut Random,
 ) -> Samples {
     // The shortest relocation of each so far; its preparation is the first. One alone may include a stall: then it moves in other processes.
@@ -89,6 +95,7 @@ pub(crate) fn experiment<'a>(
     }
     let rounds = budget.rounds_of(round_time, count);
     let mut samples = Samples::new(calls, EPOCHS * rounds);
+    let mut patience = Patience { each: PATIENCE * round_time, left: Duration::ZERO };
     let mut order: Vec<usize> = (0..count).collect();
     let mut places: Vec<usize> = (0..EPOCHS).collect();
     shuffle(&mut places, random);
@@ -105,6 +112,7 @@ pub(crate) fn experiment<'a>(
         on_stack_at(step, &mut || {
             for round in epoch * rounds..(epoch + 1) * rounds {
                 shuffle(&mut order, random);
+                let before = patience.wait(clock, core);
                 for &which in &order {
                     let (calls, state) = (samples.calls[which], random.below(states));
                     match block(&mut candidates[which], state, calls) {
@@ -112,10 +120,33 @@ pub(crate) fn experiment<'a>(
                         Err(no_answer) => candidates[which] = Err(no_answer),
                     }
                 }
+                samples.crowded(round, larger(before, core.contention().0));
             }
         });
     }
     samples
+}
+
+/// How long a round may wait: what it has itself, and what the ones before left.
+struct Patience {
+    each: Duration,
+    left: Duration,
+}
+
+impl Patience {
+    /// Waits for the core to be alone; how crowded it is then.
+    fn wait(&mut self, clock: &dyn Fn() -> Duration, core: &Core) -> f64 {
+        self.left += self.each;
+        let start = clock();
+        loop {
+            let (contention, alone) = core.contention();
+            let waited = clock().saturating_sub(start);
+            if alone || waited >= self.left {
+                self.left = self.left.saturating_sub(waited);
+                return contention;
+            }
+        }
+    }
 }
 
 /// Relocates a candidate's data: by itself, or else by preparing it again.
@@ -219,6 +250,11 @@ mod tests {
         }
     }
 
+    /// A core that is alone.
+    fn alone() -> Core {
+        Core::new(|| 1.0)
+    }
+
     const BUDGET: Budget = Budget { rounds: 40, block: Duration::from_micros(200) };
 
     /// The samples and the log of candidates with these times of a call, each failing after this number of blocks.
@@ -228,7 +264,7 @@ mod tests {
             let (call, blocks) = candidates[who];
             Ok(Box::new(Scripted { who, call, blocks, log: log.clone() }))
         };
-        let samples = experiment(&prepare, candidates.len(), 1000, BUDGET, &|| Duration::ZERO, &mut Random::new(1, 2));
+        let samples = experiment(&prepare, candidates.len(), 1000, BUDGET, &|| Duration::ZERO, &alone(), &mut Random::new(1, 2));
         let log = log.lock().unwrap().clone();
         (samples, log)
     }
@@ -262,7 +298,7 @@ mod tests {
             prepared.set(count);
             Ok(Box::new(Mover([Ok(true), Ok(false), Err(())][who], count[who])))
         };
-        let samples = experiment(&prepare, 3, 1000, BUDGET, &|| Duration::ZERO, &mut Random::new(1, 2));
+        let samples = experiment(&prepare, 3, 1000, BUDGET, &|| Duration::ZERO, &alone(), &mut Random::new(1, 2));
         assert_eq!(prepared.get(), [1, EPOCHS as u32, 1]);
         let epoch = samples.of(0).len() / EPOCHS;
         for (round, (own, anew)) in samples.of(0).iter().zip(samples.of(1)).enumerate() {
@@ -285,7 +321,7 @@ mod tests {
             moves.borrow_mut()[who].push(epoch);
             Ok(Box::new(Scripted { who, call: BUDGET.block, blocks: usize::MAX, log: log.clone() }))
         };
-        let samples = experiment(&prepare, N, 1000, BUDGET, &|| now.get(), &mut Random::new(1, 2));
+        let samples = experiment(&prepare, N, 1000, BUDGET, &|| now.get(), &alone(), &mut Random::new(1, 2));
         assert_eq!(samples.of(0).len(), EPOCHS * BUDGET.rounds);
         let mut moves = moves.into_inner();
         assert!(moves.iter_mut().all(|moves| moves.remove(0) == 0), "all were made ready first");
@@ -363,7 +399,7 @@ mod tests {
                 &[]
             }
         }
-        let samples = experiment(&|_| Ok(Box::new(Batch)), 1, 1000, BUDGET, &|| Duration::ZERO, &mut Random::new(1, 2));
+        let samples = experiment(&|_| Ok(Box::new(Batch)), 1, 1000, BUDGET, &|| Duration::ZERO, &alone(), &mut Random::new(1, 2));
         let calls = samples.calls[0];
         assert!(calls.is_multiple_of(64) && (200 * 64..400 * 64).contains(&calls), "{calls} calls");
         assert!(samples.of(0).iter().all(|ns| (ns - 1000.0 / 64.0).abs() < 1e-9), "a time is that of a batch over its states");
@@ -400,6 +436,48 @@ mod tests {
         for pair in log.windows(2).filter(|pair| pair[0].1.len() * WARM == pair[1].1.len() && pair[0].1.start > 0) {
             assert_eq!(pair[0].1.end, pair[1].1.start, "the calls before a block are at the states before it");
         }
+    }
+
+    /// A program is on the core's other thread at some of the measurements.
+    fn visited(during: Range<usize>, clock: &dyn Fn() -> Duration) -> (Samples, usize) {
+        thread_local!(static MEASURED: Cell<usize> = const { Cell::new(0) });
+        thread_local!(static VISIT: RefCell<Range<usize>> = const { RefCell::new(0..0) });
+        MEASURED.set(0);
+        VISIT.set(during);
+        let core = Core::new(|| {
+            MEASURED.set(MEASURED.get() + 1);
+            if VISIT.with_borrow(|visit| visit.contains(&MEASURED.get())) { 1.3 } else { 1.0 }
+        });
+        let prepare = |who: usize| -> Ready { Ok(Box::new(Scripted { who, call: BUDGET.block, blocks: usize::MAX, log: Log::default() })) };
+        let samples = experiment(&prepare, 2, 1000, BUDGET, clock, &core, &mut Random::new(1, 2));
+        (samples, MEASURED.get())
+    }
+
+    /// Rounds whose core was crowded.
+    fn crowded(samples: &Samples) -> Vec<usize> {
+        (0..EPOCHS * BUDGET.rounds).filter(|&round| samples.contention()[round] != 1.0).collect()
+    }
+
+    /// Measured before and after each round. The visit begins after the third round: the fourth waits until it ends.
+    #[test]
+    fn a_round_waits_for_the_core_to_be_alone() {
+        let (samples, measured) = visited(6..20, &|| Duration::ZERO);
+        assert_eq!((crowded(&samples), measured), (vec![2], 2 * EPOCHS * BUDGET.rounds + 13));
+    }
+
+    /// Every reading of the clock is a tenth of a round later: what all rounds may wait, they wait once.
+    #[test]
+    fn rounds_wait_so_long_and_no_longer() {
+        let now = Cell::new(Duration::ZERO);
+        let clock = || {
+            now.set(now.get() + 2 * BUDGET.block / 10);
+            now.get()
+        };
+        let rounds = EPOCHS * BUDGET.rounds;
+        let (samples, measured) = visited(10..usize::MAX, &clock);
+        assert_eq!(crowded(&samples), (4..rounds).collect::<Vec<_>>());
+        let waited = measured - 2 * rounds;
+        assert!((16 * rounds..=20 * rounds).contains(&waited), "{waited} for {rounds} rounds");
     }
 
     #[test]

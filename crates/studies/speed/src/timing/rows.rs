@@ -1,7 +1,7 @@
 //! Rows of the outcomes of a robot's cells.
 
 use super::machine::Machine;
-use super::samples::{Candidate, Processes, Samples};
+use super::samples::{Candidate, Processes, Samples, quietest_of};
 use super::{CellKind, MACHINE, Paired, REFERENCE, check};
 use featherbench_bench::measure::worst;
 use featherbench_bench::statistics::{Estimate, Pace, drift, quantile_of};
@@ -22,13 +22,20 @@ pub(super) fn rows(gates: &Gates, robot: &Robot, best_of: &[String], finished: &
             Ok(CellKind::Machine) => machines.extend(machine(&item.0, robot, &item.1)),
             Ok(CellKind::Check { .. }) => checks.push(Check::of(gates, robot, item)),
             Ok(CellKind::Overhead { .. }) => overheads.extend(overhead(robot, item)),
-            Ok(CellKind::Experiment(paired)) => processes.push((item, paired)),
+            Ok(CellKind::Experiment(paired)) => {
+                let samples = match item.1.answer() {
+                    Err(no_answer) => Err(no_answer.to_string()),
+                    Ok(_) => Samples::of_outcome(&item.1, paired.candidates.len()).ok_or_else(|| "the outcome holds no samples".to_owned()),
+                };
+                processes.push(Process { cell: &item.0, paired, samples });
+            }
             Err(_) => {}
         }
     }
     // The cells of an experiment stand together, process after process.
-    let same = |a: &(&Finished, Paired), b: &(&Finished, Paired)| a.0.0.path() == b.0.0.path() && a.1.cache == b.1.cache;
-    let experiments: Vec<Experiment> = processes.chunk_by(same).map(|processes| Experiment::of(robot, processes)).collect();
+    let same = |a: &Process, b: &Process| a.cell.path() == b.cell.path() && a.paired.cache == b.paired.cache;
+    let quietest = quietest_of(processes.iter().filter_map(|process| process.samples.as_ref().ok()));
+    let experiments: Vec<Experiment> = processes.chunk_by(same).map(|processes| Experiment::of(robot, processes, quietest)).collect();
     let (noise, drift) = (noise(&experiments), drift(experiments.iter().filter_map(Experiment::copies)));
     let checked = checks.iter().filter_map(|check| check.row.clone());
     let timed = experiments.iter().flat_map(|experiment| {
@@ -149,6 +156,14 @@ impl Check {
     }
 }
 
+/// The part of an experiment that one process made.
+struct Process<'a> {
+    cell: &'a Cell,
+    paired: Paired,
+    /// Or why there are none.
+    samples: Result<Samples, String>,
+}
+
 /// One experiment with its statistics.
 pub(super) struct Experiment<'a> {
     cell: &'a Cell,
@@ -161,13 +176,11 @@ pub(super) struct Experiment<'a> {
 }
 
 impl<'a> Experiment<'a> {
-    fn of(robot: &Robot, processes: &[(&'a Finished, Paired)]) -> Self {
-        let ((cell, _), Paired { cache, states, seconds, candidates, .. }) = &processes[0];
-        let samples = processes.iter().map(|((_, outcome), _)| match outcome.answer() {
-            Err(no_answer) => Err(no_answer.to_string()),
-            Ok(_) => Samples::of_outcome(outcome, candidates.len()).ok_or_else(|| "the outcome holds no samples".to_owned()),
-        });
-        let samples = samples.collect::<Result<Vec<_>, _>>().map(Processes::new);
+    /// Of its processes; the core was alone where it was about as crowded as `quietest`.
+    fn of(robot: &Robot, processes: &[Process<'a>], quietest: f64) -> Self {
+        let Process { cell, paired: Paired { cache, states, seconds, candidates, .. }, .. } = &processes[0];
+        let samples = processes.iter().map(|process| process.samples.clone()).collect::<Result<Vec<_>, _>>();
+        let samples = samples.map(|samples| Processes::new(samples, quietest));
         let fastest = samples.as_ref().ok().map(|samples| samples.steady.fastest).filter(|&fastest| fastest < processes.len());
         let params = RowParams { states: *states, seconds: *seconds, fastest, ..RowParams::default() };
         let blank = Row { kind: Kind::Measured, cache: cache.clone(), params: params::text(&params), ..row(cell, robot) };

@@ -1,7 +1,7 @@
 //! Raw samples: the data of an experiment, as the outcome of its cell and as a line of the run's side file.
 
 use super::Paired;
-use featherbench_bench::statistics::{Estimate, Steady, undisturbed};
+use featherbench_bench::statistics::{Estimate, Steady, quietest, undisturbed};
 use featherbench_bench::{Finished, Outcome, Quantity};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -12,14 +12,14 @@ pub(crate) struct Samples {
     /// Calls in a block of each candidate.
     pub calls: Vec<usize>,
     rounds: usize,
-    /// Candidate after candidate, each round by round; NaN where there was none.
+    /// Candidate after candidate, each round by round; NaN where there was none. Then how crowded the core was, round by round.
     ns: Vec<f64>,
 }
 
 impl Samples {
     /// Memory for the blocks of candidates with these calls.
     pub fn new(calls: Vec<usize>, rounds: usize) -> Self {
-        Self { ns: vec![f64::NAN; calls.len() * rounds], calls, rounds }
+        Self { ns: vec![f64::NAN; (calls.len() + 1) * rounds], calls, rounds }
     }
 
     /// Stores a block.
@@ -27,12 +27,22 @@ impl Samples {
         self.ns[candidate * self.rounds + round] = ns;
     }
 
+    /// Stores how crowded the core was in a round.
+    pub fn crowded(&mut self, round: usize, contention: f64) {
+        self.set(self.calls.len(), round, contention);
+    }
+
     /// A candidate's blocks, round by round.
     pub fn of(&self, candidate: usize) -> &[f64] {
         &self.ns[candidate * self.rounds..(candidate + 1) * self.rounds]
     }
 
-    /// As the outcome of a cell: the number of candidates, their calls, their blocks.
+    /// How crowded the core was, round by round.
+    pub fn contention(&self) -> &[f64] {
+        self.of(self.calls.len())
+    }
+
+    /// As the outcome of a cell: the number of candidates, their calls, their blocks, how crowded the core was.
     pub fn to_values(&self) -> Vec<f64> {
         let calls = self.calls.iter().map(|&calls| calls as f64);
         std::iter::once(self.calls.len() as f64).chain(calls).chain(self.ns.iter().copied()).collect()
@@ -43,8 +53,9 @@ impl Samples {
         let (&candidates, rest) = values.split_first()?;
         let candidates = candidates as usize;
         let (calls, ns) = rest.split_at_checked(candidates)?;
-        let whole = candidates > 0 && ns.len().is_multiple_of(candidates);
-        whole.then(|| Self { calls: calls.iter().map(|&calls| calls as usize).collect(), rounds: ns.len() / candidates, ns: ns.to_vec() })
+        let series = candidates + 1;
+        let whole = candidates > 0 && ns.len().is_multiple_of(series);
+        whole.then(|| Self { calls: calls.iter().map(|&calls| calls as usize).collect(), rounds: ns.len() / series, ns: ns.to_vec() })
     }
 
     /// The samples of one process of an experiment with so many candidates.
@@ -63,15 +74,18 @@ pub(crate) struct Processes {
     pub steady: Steady,
 }
 
+/// The least of how crowded the core was in these processes.
+pub(crate) fn quietest_of<'s>(samples: impl Iterator<Item = &'s Samples>) -> f64 {
+    quietest(&samples.flat_map(Samples::contention).copied().collect::<Vec<_>>())
+}
+
 impl Processes {
-    /// Of the blocks of each of the processes.
-    pub fn new(samples: Vec<Samples>) -> Self {
+    /// Of the blocks of each of the processes; the core was alone where it was about as crowded as this.
+    pub fn new(samples: Vec<Samples>, quietest: f64) -> Self {
         let candidates = samples.first().map_or(0, |samples| samples.calls.len());
-        let of = |which| samples.iter().map(|samples| undisturbed(samples.of(which))).collect();
-        let numbers: Vec<Vec<f64>> = (0..candidates).map(of).collect();
-        let answered: Vec<&Vec<f64>> = numbers.iter().filter(|numbers| numbers.iter().all(|number| number.is_finite())).collect();
-        let level = |process: usize| answered.iter().map(|numbers| numbers[process].ln()).sum::<f64>() / answered.len() as f64;
-        let steady = Steady::of(&(0..samples.len()).map(level).collect::<Vec<_>>());
+        let steady = Steady::of(samples.iter().map(Samples::contention), quietest);
+        let of = |which| (0..).zip(&samples).map(|(process, samples)| undisturbed(&steady.blocks(process, samples.of(which)))).collect();
+        let numbers = (0..candidates).map(of).collect();
         Self { samples, numbers, steady }
     }
 
@@ -92,10 +106,10 @@ impl Processes {
 
     /// Whether a candidate answered to the last round of the last process.
     pub fn answered(&self, which: usize) -> bool {
-        self.numbers[which].iter().all(|number| !number.is_nan())
+        self.samples.iter().all(|samples| samples.of(which).iter().all(|block| !block.is_nan()))
     }
 
-    /// The blocks of a candidate in all processes.
+    /// The blocks of a candidate in all processes, also of those that do not count.
     pub fn all(&self, which: usize) -> Vec<f64> {
         self.samples.iter().flat_map(|samples| samples.of(which)).copied().collect()
     }
@@ -126,7 +140,8 @@ impl Candidate {
 }
 
 /// The raw samples of every experiment as lines of JSON. Each has cell, robot, quantity, cache regime, process, candidate, and calls of a block.
-/// Then come the nanoseconds per call of its blocks, round by round (`null` where there is none).
+/// Then come the nanoseconds per call of its blocks, round by round (`null` where there is none). The last line of a process tells how
+/// crowded the core was in each round.
 pub(super) fn lines(finished: &[Finished]) -> String {
     let mut text = String::new();
     for (cell, outcome) in finished {
@@ -143,6 +158,12 @@ pub(super) fn lines(finished: &[Finished]) -> String {
             text += &line.to_string();
             text.push('\n');
         }
+        let contention: Vec<f64> = samples.contention().iter().map(|number| (number * 1e4).round() / 1e4).collect();
+        let line = json!({
+            "cell": cell.id(), "model": cell.robot, "quantity": cell.quantity, "cache": cache, "process": process, "contention": contention,
+        });
+        text += &line.to_string();
+        text.push('\n');
     }
     text
 }
@@ -155,10 +176,12 @@ mod tests {
     fn samples_survive_being_an_outcome() {
         let mut samples = Samples::new(vec![7, 1], 3);
         samples.set(1, 2, 5.5);
+        samples.crowded(1, 1.3);
         let again = Samples::from_values(&samples.to_values()).unwrap();
         assert_eq!(again.calls, [7, 1]);
         assert_eq!(again.of(1)[2], 5.5);
         assert!(again.of(0).iter().chain(&again.of(1)[..2]).all(|ns| ns.is_nan()));
+        assert!(again.contention()[1] == 1.3 && again.contention()[0].is_nan());
         for damaged in [&[][..], &[2.0], &[2.0, 7.0], &[2.0, 7.0, 1.0, 0.5], &[0.0]] {
             assert_eq!(Samples::from_values(damaged), None, "{damaged:?}");
         }

@@ -26,7 +26,7 @@ const STUDY: &str = "timing";
 /// Terms that the page explains.
 const TERMS: &[(&str, &str)] = &[(
     "Times",
-    "One thread, pinned to one core where the system allows it, after all accuracy work is done. stream reads another state at each call, hot the same one again. Inside the clock is everything from q, q̇, q̈ or τ to the result: sines and cosines, gravity, rotors' inertia; only factorization and solve start from a mass matrix or factors made before. Everyone who is timed has one block per round, in random order, beside a second copy of ours; a value is the mean over those of ten processes in which the core was at its fastest, of eight and more without the least and the largest, of the lower decile of the blocks; its bars are the 95 % interval by the scatter of the processes.",
+    "One thread, pinned to one core where the system allows it, after all accuracy work is done. stream reads another state at each call, hot the same one again. Inside the clock is everything from q, q̇, q̈ or τ to the result: sines and cosines, gravity, rotors' inertia; only factorization and solve start from a mass matrix or factors made before. Everyone who is timed has one block per round, in random order, beside a second copy of ours; a value is the mean over those of ten processes in which the core was at its fastest, of eight and more without the least and the largest, of the lower decile of the blocks of rounds in which it was not shared; its bars are the 95 % interval by the scatter of the processes.",
 )];
 
 /// A smaller share of slowed processes is not told.
