@@ -7,7 +7,7 @@ use crate::direction::sources;
 use std::path::Path;
 
 /// Folds that cannot meet a NaN, by file and a part of the line, and why.
-const HARMLESS: [(&str, &str, &str); 27] = [
+const HARMLESS: [(&str, &str, &str); 29] = [
     ("crates/harness/bench/src/robot/recognised.rs", "deepest.max(depth", "a count"),
     ("crates/cli/tests/outside/native.rs", "clocked.min(", "durations"),
     ("crates/cli/tests/outside/native.rs", "asked.min(", "durations"),
@@ -28,6 +28,8 @@ const HARMLESS: [(&str, &str, &str); 27] = [
     ),
     ("crates/studies/comparison/src/repeatability/mod.rs", "largest.max(distance)", "distances in ulps, which are integers"),
     ("crates/studies/comparison/src/reproductions/mod.rs", "fold(f64::min)", "the closure that calls it keeps what is no number"),
+    ("crates/mechanics/spatial/src/contention.rs", "wide.min(", "durations"),
+    ("crates/mechanics/spatial/src/contention.rs", "waiting.min(", "durations"),
     ("crates/studies/speed/src/timing/machine.rs", "least.min(", "durations"),
     ("crates/studies/speed/src/timing/protocol.rs", "least.min(", "durations"),
     ("crates/studies/speed/src/timing/protocol.rs", "moves[which].min(", "durations"),
