@@ -20,6 +20,8 @@ from featherbench_oracles.core.robot import Description
 from featherbench_oracles.sapien import reading
 from featherbench_oracles.sapien.building import build, placed
 
+FASTEST = 1e9  # rad/s or m/s: a joint forgets what is above its limit, which is 100 unless said otherwise
+
 
 class SapienRobot:
     """A robot in SAPIEN. Every method that takes a question answers one quantity at its state, as `protocol.Engine` says.
@@ -39,9 +41,11 @@ class SapienRobot:
         self.made = made
         self.links = [made.find_link_by_name(name) for name in links]
         joints = [joint.name for joint in made.active_joints]
-        names = [link.joint.name for link in self.links]
+        names = [link.joint.name for link in self.links if link.parent is not None]  # a root that floats has none
         self.order: NDArray[np.intp] = np.array([joints.index(name) for name in names], dtype=np.intp)
         self.model: Any = None
+        for joint in made.active_joints:
+            joint.set_max_velocity(FASTEST)
 
     def readback(self) -> list[Array]:
         """Read back each link's inertia, and each joint's frame on its parent."""
@@ -58,7 +62,7 @@ class SapienRobot:
         if any(body.joint.type == "free" for body in self.robot.bodies):
             raise Unsupported("SAPIEN is asked about robots on a fixed base")
 
-    def _theirs(self, ours: Array) -> Array:
+    def _theirs(self, ours: Array) -> NDArray[np.float32]:
         theirs = np.empty(len(ours), dtype=np.float32)
         theirs[self.order] = ours
         return theirs
