@@ -34,7 +34,7 @@ pub fn by_folder_and_table() -> Outcome {
     sandbox.run(&["oracles", "status"]).expect(0, &["chain            1", "mujoco"]);
     sandbox
         .run(&["list", "--suite", "smoke"])
-        .expect(0, &["rapier, dynibo, faer, nalgebra, adam, idyntree, mujoco_warp, newton, mjx, pybullet, exudyn, simbody, jaxsim, openusd, usd_converters, clarabel, soromox, pyelastica, chain"]);
+        .expect(0, &["rapier, dynibo, faer, nalgebra, adam, idyntree, mujoco_warp, newton, mjx, pybullet, exudyn, simbody, jaxsim, frax, sapien, openusd, usd_converters, clarabel, soromox, pyelastica, chain"]);
     sandbox.run(&["run", "--suite", "smoke", "--engine", "chain=sh", "--out", "out"]).expect(2, &["the name 'chain' is taken"]);
     let suite = "about = \"one engine\"\nseed = 1\nstates = 4\nengines = [\"chain\"]\n[[robot]]\nmodel = \"chain-planar-2\"\nfamily = \"chain\"\n\
                  [agreement]\n";

@@ -357,7 +357,7 @@ fn the_engines_of_the_project_are_described() {
     let oracles = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../oracles");
     let engines = Engines::read(&oracles.join("engines.toml")).unwrap();
     let names = engines.names(|_| true);
-    let all = "pinocchio mujoco drake dart rapier dynibo faer nalgebra adam idyntree mujoco_warp newton mjx pybullet exudyn simbody jaxsim openusd usd_converters clarabel soromox pyelastica pinocchio-clang pinocchio-gcc mujoco-native";
+    let all = "pinocchio mujoco drake dart rapier dynibo faer nalgebra adam idyntree mujoco_warp newton mjx pybullet exudyn simbody jaxsim frax sapien openusd usd_converters clarabel soromox pyelastica pinocchio-clang pinocchio-gcc mujoco-native";
     assert_eq!(names.join(" "), all);
     for format in [FileFormat::Mjcf, FileFormat::Sdf, FileFormat::Usd] {
         let reference = engines.get(format.reference()).unwrap();

@@ -1,0 +1,1 @@
+"""frax as an oracle."""

@@ -1,0 +1,1 @@
+"""SAPIEN as an oracle."""
