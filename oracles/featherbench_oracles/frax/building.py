@@ -75,6 +75,6 @@ def parsed_as(table: dict[str, Any]) -> Iterator[None]:
         frax.core.robot.parse_urdf = parser
 
 
-def read(path: Path, floats: bool) -> Any:
-    """Read a URDF by frax."""
-    return frax.core.robot.Robot(str(path), floating_base="quaternion" if floats else None)
+def read(path: Path) -> Any:
+    """Read a URDF by frax, on a fixed base."""
+    return frax.core.robot.Robot(str(path))

@@ -18,7 +18,7 @@ jax.config.update("jax_enable_x64", True)
 FILE = """<robot name="r">{root}<link name="b"><inertial><origin xyz="{com}"/><mass value="{mass}"/>
 <inertia ixx="{xx}" ixy="{xy}" ixz="{xz}" iyy="{yy}" iyz="{yz}" izz="{zz}"/></inertial></link>
 <joint name="j" type="{kind}"><origin rpy="0.3 -0.4 0.5"/><parent link="a"/><child link="b"/><axis xyz="{axis}"/>
-<limit lower="-1" upper="1" effort="{effort}" velocity="1"/></joint></robot>"""
+<limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"""
 ROOT = """<link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>"""
 
 
@@ -28,10 +28,10 @@ def turn() -> Array:
     return about(z, 0.5) @ about(y, -0.4) @ about(x, 0.3)
 
 
-def one(kind: str, root: str = ROOT, effort: str = "1") -> Any:
+def one(kind: str) -> Any:
     """Make one body on a joint."""
     six = dict(zip(("xx", "xy", "xz", "yy", "yz", "zz"), MOMENTS[np.triu_indices(3)], strict=True))
-    words = {"com": " ".join(map(str, COM)), "mass": MASS, "axis": " ".join(map(str, AXIS)), "kind": kind, "root": root, "effort": effort}
+    words = {"com": " ".join(map(str, COM)), "mass": MASS, "axis": " ".join(map(str, AXIS)), "kind": kind, "root": ROOT}
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "r.urdf"
         path.write_text(FILE.format(**six, **words), encoding="utf-8")

@@ -33,9 +33,9 @@ def read(path: Path, base: str, make: Callable[[Description, Any, NDArray[np.int
     notes: list[Header] = []
     with overheard(path, notes):
         try:
-            made = building.read(path, floats=False)
+            made = building.read(path)
         except AttributeError as reason:
-            raise Unsupported(f"frax reads no file whose root has no inertial, or with a limit without effort: {reason}") from reason
+            raise Unsupported(f"frax's parser fails, as it does where the root has no inertial: AttributeError: {reason}") from reason
     order = _depth_first(made.parent_idxs.tolist())
     links = loaded(_links(made, order, path), notes, moving(path))
     links = bad_values.left_out(path, "urdf", links, notes)

@@ -74,7 +74,7 @@ pub(crate) struct Processes {
     pub steady: Steady,
 }
 
-/// The least of how crowded the core was in these processes.
+/// How crowded the core was in the quietest rounds of these processes.
 pub(crate) fn quietest_of<'s>(samples: impl Iterator<Item = &'s Samples>) -> f64 {
     quietest(&samples.flat_map(Samples::contention).copied().collect::<Vec<_>>())
 }
